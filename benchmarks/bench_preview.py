@@ -7,6 +7,10 @@ slow, the first picture after a change has the share of the resolution in column
 follows after a rest: `full`, for a changed value. `slider` is the number of the page's frames from a moved slider to
 the picture, and the milliseconds.
 
+The rows before these are of the first picture: the seconds from the start of the command `sssgen preview` to its
+address, to the page's own start, to the message with the picture, to the picture, and to that of full resolution; with
+an empty cache folder, and with the one that the first run has left.
+
 The last rows change one value 10,000 times without a browser, and a technique's line after each hundred: the memory of
 the process at the start, in the middle and at the end.
 """
@@ -19,6 +23,7 @@ import os
 import re
 import shutil
 import statistics
+import subprocess
 import sys
 import tempfile
 import threading
@@ -28,12 +33,15 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.material import library
+from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.run.machine_parts import chromium
 from sssgen.support.paths import folder
 
 VALUE_SAVES, LINE_SAVES, FRAMES = 10, 5, 5
+FIRST = 3
+"""Examples whose first pictures are measured."""
 EDITS = 10_000
 GOAL = 100.0
 """Milliseconds from a save to its picture."""
@@ -73,6 +81,28 @@ MEASURE = """
     slider.dispatchEvent(new Event('input'));
     requestAnimationFrame(look);
   });
+}
+"""
+
+
+TIMES = """
+() => {
+  const times = globalThis.times = {};
+  const now = () => (performance.timeOrigin + performance.now()) / 1000;
+  const Socket = WebSocket;
+  globalThis.WebSocket = class extends Socket {
+    constructor(...all) {
+      super(...all);
+      times.page = now();
+      this.addEventListener('message', () => { times.message ??= now(); });
+    }
+  };
+  const look = () => {
+    if (document.body?.dataset.version) times.picture ??= now();
+    if (times.picture && globalThis.preview?.stage?.drafts.sharp) times.full ??= now();
+    if (!times.full) setTimeout(look, 5);
+  };
+  look();
 }
 """
 
@@ -134,7 +164,7 @@ class Example:
 @contextlib.contextmanager
 def served(shown: Pane) -> Iterator[str]:
     """The address of a server in a thread of its own."""
-    server, started, loop = PreviewServer(shown), threading.Event(), asyncio.new_event_loop()
+    server, started, loop = PreviewServer(PageMessages(shown)), threading.Event(), asyncio.new_event_loop()
     task = loop.create_task(server.run(0, False, lambda _: started.set()))
 
     def run() -> None:
@@ -200,6 +230,26 @@ def row(browser: Any, root: Path, name: str) -> tuple[float, float]:
     return value, line
 
 
+def first(browser: Any, name: str, cache: str) -> None:
+    """Prints the row of the first picture of an example."""
+    page = browser.new_page(viewport=SIZE)
+    page.add_init_script(f"({TIMES})()")
+    start = time.time()
+    command = [sys.executable, "-m", "sssgen", "preview", name, "--no-browser"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, env={**os.environ, "SSSGEN_CACHE": cache}
+    ) as server:
+        assert server.stdout is not None
+        address = server.stdout.readline().strip()
+        times = [time.time()]
+        page.goto(address)
+        until(page, "times.full")
+        times += [page.evaluate(f"times.{event}") for event in ("page", "message", "picture", "full")]
+        server.terminate()
+    page.close()
+    print(f"{name:14} {' '.join(f'{one - start:8.2f}' for one in times)}", flush=True)
+
+
 def resident() -> float:
     """The resident memory of this process in MB."""
     pages = Path("/proc/self/statm").read_text("ascii").split()[1]
@@ -228,6 +278,13 @@ def main(names: list[str]) -> None:
     chosen = names or sorted(
         path.parent.name for path in folder("examples").glob("*/scene.toml") if path.parent.name != "jelly_cubes"
     )
+    with tempfile.TemporaryDirectory() as cache, sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chromium(), args=SWITCHES)
+        print(f"{'first, s':14} {' '.join(f'{one:>8}' for one in ('address', 'page', 'message', 'picture', 'full'))}")
+        for name in chosen[:FIRST]:
+            first(browser, name, cache)
+            first(browser, name, cache)
+        browser.close()
     columns = f"{'frame ms':>8} {'value':>8} {'line':>8} {'full':>8} {'share':>6}"
     print(f"{'':14} {columns}  ratios to frame  slider: frames")
     with tempfile.TemporaryDirectory() as root, sync_playwright() as driver:

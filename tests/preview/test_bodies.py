@@ -11,7 +11,8 @@ import pytest
 from sssgen.preview import bodies
 from sssgen.preview.bodies import OWN_MESH, dropped_mesh, extent, fit, frame
 from sssgen.preview.body_triangles import body_triangles
-from sssgen.preview.page_messages import PageMessages, unpack
+from sssgen.preview.page_frames import unpack
+from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.scene.geometry import Ball, Box, Mesh
 from sssgen.support.diagnostics import SssgenError

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from sssgen.preview import preview_server
+from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.run.web_library import Library
@@ -76,7 +77,7 @@ def watched(stone: Path, pages: int, work: Callable[..., Awaitable[None]], opene
     said: list[str] = []
 
     async def run() -> None:
-        server, ready = PreviewServer(Pane(str(stone))), asyncio.Event()
+        server, ready = PreviewServer(PageMessages(Pane(str(stone)))), asyncio.Event()
 
         def hear(line: str) -> None:
             said.append(line)

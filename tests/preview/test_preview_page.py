@@ -108,12 +108,13 @@ def test_lamps_and_the_eye_are_dragged(shown: Shown) -> None:
     before = shown.picture()
     box = shown.page.locator("main canvas").bounding_box()
     place = shown.page.evaluate(
-        "(() => { const { handles, camera } = preview.stage; const at = handles[1].position.clone().project(camera);"
+        "(() => { const { lamps, camera } = preview.stage;"
+        " const at = lamps.handles[1].position.clone().project(camera);"
         " return [at.x, at.y]; })()"
     )
     x, y = box["x"] + (place[0] + 1) / 2 * box["width"], box["y"] + (1 - place[1]) / 2 * box["height"]
     mouse = shown.page.mouse
-    lamp = "preview.stage.lamps[1].position.toArray()"
+    lamp = "preview.stage.lamps.all[1].position.toArray()"
     was, eye = shown.page.evaluate(lamp), shown.page.evaluate("preview.stage.camera.position.toArray()")
     mouse.move(x, y), mouse.down(), mouse.move(x - 60, y + 20, steps=4), mouse.up()
     assert shown.page.evaluate(lamp) != pytest.approx(was)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
+import threading
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,8 @@ from typing import Any
 import pytest
 
 from sssgen.cli.main import main
+from sssgen.preview import preview_server
+from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
 from sssgen.run.web_library import Library
@@ -27,7 +31,7 @@ MATERIAL = '[material]\nname = "stone"\nshading = "lit"\n[[surface]]\ntechnique 
 def server(tmp_path: Path) -> PreviewServer:
     path = tmp_path / "stone.toml"
     path.write_text(MATERIAL, encoding="utf-8")
-    return PreviewServer(Pane(str(path)))
+    return PreviewServer(PageMessages(Pane(str(path))))
 
 
 def asked(server: PreviewServer, ask: Callable[[Any], Awaitable[Any]]) -> Any:
@@ -121,8 +125,6 @@ def test_another_shape_is_another_body(server: PreviewServer) -> None:
 def test_a_port_in_use_is_an_error(server: PreviewServer, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     import socket
 
-    from sssgen.preview import preview_server
-
     monkeypatch.setattr(preview_server, "library", lambda: Library({}, {}))
     with socket.socket() as taken:
         taken.bind((HOST, 0))
@@ -134,7 +136,7 @@ def test_a_port_in_use_is_an_error(server: PreviewServer, monkeypatch: pytest.Mo
 def test_the_address_as_json(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    async def run(self: PreviewServer, port: int, opened: bool, ready: Callable[[str], None]) -> None:
+    async def run(self: PreviewServer, port: int, opened: bool, ready: Callable[[str], None], make: None) -> None:
         ready(self.url)
         ready("no browser was found: open this address in one")
 
@@ -143,3 +145,39 @@ def test_the_address_as_json(
     assert main(["preview", str(tmp_path / "stone.toml"), "--json"]) == 0
     (line,) = capsys.readouterr().out.splitlines()
     assert json.loads(line)["address"].startswith(f"http://{HOST}")
+
+
+def test_a_page_that_is_there_before_the_picture_gets_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "stone.toml"
+    path.write_text(MATERIAL, encoding="utf-8")
+    monkeypatch.setattr(preview_server, "library", lambda: Library({}, {}))
+    server, connected = PreviewServer(), threading.Event()
+
+    def make() -> PageMessages:
+        assert connected.wait(30)
+        return PageMessages(Pane(str(path)))
+
+    async def run() -> dict[str, Any]:
+        listening = asyncio.Event()
+        serving = asyncio.create_task(server.run(0, False, lambda _: listening.set(), make))
+        await listening.wait()
+        async with aiohttp.ClientSession() as client, client.ws_connect(f"{server.url}events") as events:
+            connected.set()
+            message: dict[str, Any] = await events.receive_json(timeout=30)
+        serving.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await serving
+        return message
+
+    message = asyncio.run(run())
+    assert message["kind"] == "picture" and message["picture"]["name"] == "stone"
+
+
+def test_pictures_that_cannot_be_made_end_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(preview_server, "library", lambda: Library({}, {}))
+
+    def make() -> PageMessages:
+        return PageMessages(Pane(str(tmp_path / "nothing.toml")))
+
+    with pytest.raises(SssgenError, match=r"nothing\.toml"):
+        asyncio.run(PreviewServer().run(0, False, print, make))

@@ -11,6 +11,8 @@ EMIT = "`sssgen emit` with a warm cache does not need it, and would take noticea
 EXTRA = "an optional package: what does not need it works without it"
 HELP = "the module is imported for its options, too: `--help` works without optional packages"
 
+PREVIEW = "the first picture of `sssgen preview` does not need it, and would come later (benchmarks/bench_preview.py)"
+
 LAZY_IMPORTS = {
     "sssgen.cli.bake": HELP,
     "sssgen.cli.bake_fluence": HELP,
@@ -40,6 +42,8 @@ LAZY_IMPORTS = {
     "sssgen.cli.stress": HELP,
     "sssgen.cli.transpile": EXTRA,
     "sssgen.cli.use": HELP,
+    "sssgen.preview.page_messages": PREVIEW,
+    "sssgen.preview.technique_scene": PREVIEW,
     "sssgen.run.backends.browser_page": EXTRA,
     "sssgen.run.backends.opengl": EXTRA,
     "sssgen.run.backends.dispatch": EXTRA,

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.run.machine_parts import chromium
@@ -54,7 +55,7 @@ class Shown:
 
     def __init__(self, browser: Any, *names: str | Pane, renderer: str = "webgl2") -> None:
         shown = [Pane(name) if isinstance(name, str) else name for name in names]
-        self.server = PreviewServer(*shown)
+        self.server = PreviewServer(PageMessages(*shown))
         started = threading.Event()
         self.loop = asyncio.new_event_loop()
         self.task = self.loop.create_task(self.server.run(0, False, lambda _: started.set()))

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import json
+import os
 from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING
 
 from sssgen.cli.output import OK
+from sssgen.support.paths import folder
+
+if TYPE_CHECKING:
+    from sssgen.preview.page_messages import PageMessages
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -25,12 +32,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Serves the page until Ctrl-C."""
-    from sssgen.preview.bodies import checked_mesh
-    from sssgen.preview.pane import Pane
     from sssgen.preview.preview_server import PreviewServer
-    from sssgen.scene.geometry import Mesh
-
-    mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
 
     def announce(line: str) -> None:
         if not arguments.json:
@@ -39,10 +41,25 @@ def run(arguments: Namespace) -> int:
             print(json.dumps({"ok": True, "address": line}), flush=True)
 
     async def serve() -> None:
-        other = Pane(arguments.OTHER, mesh) if arguments.OTHER else None
-        server = PreviewServer(Pane(arguments.NAME, mesh), other)
-        await server.run(arguments.port, not arguments.no_browser, announce)
+        # a name that stands for no file may be a wrong one: no page is opened for it; a program reads one answer
+        named = os.path.isfile(arguments.NAME) or os.path.isdir(os.path.join(folder("examples"), arguments.NAME))
+        early = named and not arguments.json
+        make = functools.partial(_pictures, arguments)
+        server = PreviewServer() if early else PreviewServer(make())
+        await server.run(arguments.port, not arguments.no_browser, announce, make if early else None)
 
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(serve())
     return OK
+
+
+def _pictures(arguments: Namespace) -> PageMessages:
+    """The pictures of the command's names. Raises SssgenError."""
+    from sssgen.preview.bodies import checked_mesh
+    from sssgen.preview.page_messages import PageMessages
+    from sssgen.preview.pane import Pane
+    from sssgen.scene.geometry import Mesh
+
+    mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
+    other = Pane(arguments.OTHER, mesh) if arguments.OTHER else None
+    return PageMessages(Pane(arguments.NAME, mesh), other)

@@ -81,6 +81,12 @@ def preset_material(
     return PresetMaterial(material_text(name, choice.stages, preset.title, doc, choice.settings), files)
 
 
+def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[MaterialSection]:
+    """The stages for a body, without pictures. Raises SssgenError as `preset_material` does."""
+    _check_unit(preset, size)
+    return _choice(preset, quality, size, None, False).stages
+
+
 def _choice(preset: Preset, quality: str, size: BodySize, kept: SurfaceModel | None, keeps_color: bool) -> Choice:
     """The stages. A sheet is the same in all qualities: it needs no picture of the body and no bake."""
 

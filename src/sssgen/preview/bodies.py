@@ -13,9 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.interchange.material_writer import mean_chord
+from sssgen.pipeline.emitted_cache import installation
 from sssgen.presets.preset_stages import BodySize
 from sssgen.preview.body_triangles import body_triangles
-from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
+from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus
 from sssgen.scene.mesh_files import FileContent
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
@@ -88,10 +89,10 @@ def frame(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> t
 def packed_triangles(geometry: Geometry) -> bytes:
     """The packed triangles; those of the last bodies are kept until a file of theirs changes.
 
-    The triangles of the shapes that are distance functions, which take seconds, are in the cache folder, too.
+    Those that are cut out of a grid of distances, which takes seconds, are in the cache folder, too.
     """
     at_origin, key = _at_origin(geometry), body_key(geometry)
-    if isinstance(at_origin, Distance) and at_origin in SHAPES.values():
+    if isinstance(at_origin, Distance | Torus):
         return remember(_bodies, key, lambda: _load_triangles(at_origin, key), MOST_BODIES)
     return remember(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).pack(), MOST_BODIES)
 
@@ -118,11 +119,12 @@ MOST_BODIES = 6
 _bodies: dict[str, CachedResult] = {}
 
 
-def _load_triangles(geometry: Distance, key: str) -> bytes:
-    """The packed triangles of a distance function, from the cache folder if its files are as they were."""
+def _load_triangles(geometry: Distance | Torus, key: str) -> bytes:
+    """The packed triangles, from the cache folder if the files of the body and sssgen itself are as they were."""
     with noted_files() as read:
-        _ = geometry.function
-    stamp = sorted((path, state.modified, state.size) for path, state in read.items())
+        if isinstance(geometry, Distance):
+            _ = geometry.function
+    files = sorted((path, state.modified, state.size) for path, state in read.items())
     name = f"body_{hashlib.sha256(key.encode()).hexdigest()[:24]}"
-    result: bytes = cache.load_or_make(name, stamp, lambda: body_triangles(geometry).pack())
+    result: bytes = cache.load_or_make(name, [installation(), files], lambda: body_triangles(geometry).pack())
     return result

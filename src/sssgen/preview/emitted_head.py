@@ -17,7 +17,7 @@ from sssgen.targets.reflection_record import TextureRecord, UniformRecord
 TARGET = "threejs"
 DRAWN_BY_PAGE = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.of == "body")
 """The passes that the material's own runtime runs; other textures are made once, for the scene's own light."""
-PARTS = ("name", "title", "module", "controls", "textures", "two_sided", "cost")
+PARTS = ("name", "title", "module", "controls", "textures", "two_sided", "lamp_passes", "cost")
 """The parts of a head that `emitted_head` makes."""
 
 
@@ -80,6 +80,11 @@ def emitted_head(
         "controls": controls(reflection["uniforms"], values, in_scene),
         "textures": [slot(texture, texture["property"], texture["drawn"] or "") for texture in reflection["textures"]],
         "two_sided": reflection["two_sided"],
+        "lamp_passes": [
+            {"seen_from": drawn["seen_from"], "views": len(drawn["views"])}
+            for drawn in reflection["passes"]
+            if drawn["of"] == "body" and drawn["views"] and drawn["seen_from"] != "eye"
+        ],
         "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items()},
     }
 

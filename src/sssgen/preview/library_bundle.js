@@ -10,3 +10,6 @@ export { log } from 'three/tsl';
 export { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 export { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 export { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
+export { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
+export { EXRLoader } from 'three/addons/loaders/EXRLoader.js';
+export { zipSync } from 'three/addons/libs/fflate.module.js';

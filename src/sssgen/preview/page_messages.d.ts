@@ -91,12 +91,19 @@ export interface BodyPicture extends AnyPicture {
   two_sided: boolean;
   body: string;
   model: number[];
-  lights: { position: Vector4; color: Vector3 }[];
+  lights: Light[];
+  lamp_passes: { seen_from: string; views: number }[];
   ambient: Vector3;
   background: Vector3[];
   shadows: boolean;
   tone_mapping: string;
   camera: { position: Vector3; target: Vector3; field_of_view: number };
+}
+
+/** A lamp: `position` ends with 1, or the direction of one from afar with 0; `color` is its radiance, at a place that at a distance of 1. */
+export interface Light {
+  position: number[];
+  color: number[];
 }
 
 type Vector3 = [number, number, number];

@@ -4,17 +4,18 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
-`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `save_as` (the same, for
-a new folder), `edit` (a change of the chain) and `undo` (of what was written last); the questions `existing` (the files
-that `save_as` would replace), `menus` (presets and media), `techniques` (for a place in the chain), `medium` (the
-parameters of a medium by name) and `measured` (the error in a chart); and, while the page shows emitted text, `text`
-(of a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said`
-and `error` (a text), and the answer to a question, which has its kind.
+`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `save_as` (the same,
+for a new folder), `lights` (the lamps, for the scene's file), `edit` (a change of the chain) and `undo` (of what was
+written last); the questions `existing` (the files that `save_as` would replace), `menus` (presets and media),
+`techniques` (for a place in the chain), `medium` (the parameters of a medium by name) and `measured` (the error in a
+chart); and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file that lines come
+from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a question, which
+has its kind.
 """
 
 from __future__ import annotations
 
-import json
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -23,35 +24,15 @@ from sssgen.presets.preset_list import MENU_QUALITIES, media_list, preset_list
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.chain_edits import technique_rows
 from sssgen.preview.emitted_text import source_of, text_of
-from sssgen.preview.measured_error import MeasuredError, measured_error
+from sssgen.preview.page_frames import MOST_BYTES
 from sssgen.preview.pane import Pane, StartPane
 from sssgen.preview.saved_copy import Copy, existing_files, write_copy
 from sssgen.scene.measured import media
+from sssgen.scene.scene import Light
+from sssgen.scene.scene_keys import MAX_LIGHTS
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
 from sssgen.support.paths import posix
-
-MOST_BYTES = 64 << 20
-"""The largest file that a page may send."""
-MOST_TEXT = 1 << 20
-"""The largest message besides its file."""
-
-
-def unpack(frame: bytes) -> tuple[dict[str, Any], bytes]:
-    """The message and the file in a binary frame: JSON in one line, then the bytes. Raises ValueError."""
-    line, _, data = frame.partition(b"\n")
-    return parse(line), data
-
-
-def parse(text: str | bytes) -> dict[str, Any]:
-    """The message in a JSON text. Raises ValueError."""
-    if len(text) > MOST_TEXT:
-        raise ValueError("too long")
-    message = json.loads(text)
-    if not isinstance(message, dict):
-        raise ValueError("no object")
-    return message
-
 
 BESIDE = {"": "nothing", "guards": "without guards", "start": "as at the start"}
 """What may stand beside a picture, and its name on the page."""
@@ -74,6 +55,7 @@ class PageMessages:
             "save_as": self._save_as,
             "edit": self._edit,
             "undo": self._undo,
+            "lights": self._save_lights,
         }
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
@@ -145,6 +127,8 @@ class PageMessages:
         return source_of(str(message["name"]), folder, self.files)
 
     def _measured_error(self, message: dict[str, Any]) -> dict[str, Any]:
+        from sssgen.preview.measured_error import MeasuredError, measured_error
+
         pane = self._pane(message)
         scene, material = pane.scene, pane.picture.material
         answer = measured_error(scene, material) if scene and material else MeasuredError("", "")
@@ -227,7 +211,25 @@ class PageMessages:
         folder = str(message["name"]).replace("\\", "/")
         return folder, self._pane(message).copy(folder.rpartition("/")[2])
 
+    def _save_lights(self, message: dict[str, Any], _: bytes) -> str:
+        lights = [_light(row["position"], row["color"]) for row in message["lights"]]
+        if len(lights) > MAX_LIGHTS:
+            raise ValueError(len(lights))
+        try:
+            return self._pane(message).save_lights(lights)
+        finally:
+            self.renew()
+
 
 def _numbers(values: Mapping[str, Sequence[Any]]) -> dict[str, list[float]]:
     """Values as the page sends them. Raises ValueError, TypeError or AttributeError for others."""
     return {str(name): [float(number) for number in value] for name, value in values.items()}
+
+
+def _light(place: Sequence[Any], color: Sequence[Any]) -> Light:
+    """The light of a message: a position that ends with 1, or a direction that ends with 0. Raises ValueError."""
+    x, y, z, w = (float(number) for number in place)
+    red, green, blue = (float(number) for number in color)
+    if not all(math.isfinite(number) for number in (x, y, z, red, green, blue)) or (w == 0.0 and x == y == z == 0.0):
+        raise ValueError(place)
+    return Light((x, y, z) if w else None, None if w else (x, y, z), (red, green, blue))

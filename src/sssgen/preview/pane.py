@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -21,17 +22,20 @@ from sssgen.preview.saved_copy import Copy, copy_of
 from sssgen.preview.saved_values import (
     Change,
     is_saved_in_scene,
+    save_lights,
     save_to_material,
     save_to_scene,
     saves_where,
     write_text,
 )
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
+from sssgen.scene.bake_advice import is_scene
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.preview_scene import scene_of
-from sssgen.scene.scene import Scene
+from sssgen.scene.scene import Light, Scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
+from sssgen.support.installed_files import is_installed, refusal
 from sssgen.support.paths import posix
 from sssgen.support.unsaved import kept
 
@@ -220,6 +224,18 @@ class Pane:
             )
             written.append(f"{labels} in {posix(material.file)}")
         return f"Saved: {'; '.join(written)}." if written else ""
+
+    def save_lights(self, lights: Sequence[Light]) -> str:
+        """Writes lamps into the scene's file; says where. Raises SssgenError where the scene is not a person's own."""
+        scene, material = self._save_files()
+        file = scene.document.reporter.file
+        if not is_scene(scene, material):
+            hint = f"write one beside the material: {posix(os.path.join(os.path.dirname(file), 'scene.toml'))}"
+            raise failure("these lamps are the preview's own: the material has no scene", hint)
+        if is_installed(file):
+            raise refusal(file)
+        save_lights(file, lights)
+        return f"Saved: {len(lights)} lamps in {posix(file)}."
 
 
 def _change(control: Control, value: Sequence[float], look: Sequence[float] | None) -> Change:

@@ -15,15 +15,17 @@ import threading
 import webbrowser
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parse, unpack
-from sssgen.preview.pane import Pane
+from sssgen.preview.page_frames import MOST_BYTES, MOST_TEXT, parse, unpack
 from sssgen.run.web_library import Library, library
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import need
 from sssgen.support.file_changes import changes
+
+if TYPE_CHECKING:
+    from sssgen.preview.page_messages import PageMessages
 
 HOST = "127.0.0.1"
 MOST_PORT = 65535
@@ -40,12 +42,24 @@ IMPORT_MAP = '{"imports": {}}'
 """The text in index.html that the server replaces by the import map."""
 
 
-class PreviewServer:
-    """The pages of one preview, and the pictures that they show."""
+MODULES = "<!-- modules -->"
+"""The text in index.html in place of which all modules are named: a browser then asks for all at once."""
 
-    def __init__(self, pane: Pane, other: Pane | None = None) -> None:
+
+class PreviewServer:
+    """The pages of one preview, and the pictures that they show.
+
+    Where it gets none at first, `run` makes them while a browser starts and loads the page.
+    """
+
+    talk: PageMessages
+    """The pictures; read with the lock `_making`, which is held while they are made"""
+
+    def __init__(self, talk: PageMessages | None = None) -> None:
         self.web = need("aiohttp.web", "aiohttp", "preview")
-        self.talk, self.token, self.port = PageMessages(pane, other), secrets.token_urlsafe(16), 0
+        self.token, self.port = secrets.token_urlsafe(16), 0
+        if talk is not None:
+            self.talk = talk
         self.pages: dict[Any, asyncio.Event] = {}
         """Each page, with the event that it has not got the newest pictures."""
         self.library = Library({}, {})
@@ -69,8 +83,13 @@ class PreviewServer:
         application.router.add_get("/{token}/events", self._events)
         return application
 
-    async def run(self, port: int, opened: bool, ready: Callable[[str], None]) -> None:
-        """Serves until it is cancelled. Raises SssgenError where the port is in use or three.js is missing."""
+    async def run(
+        self, port: int, opened: bool, ready: Callable[[str], None], make: Callable[[], PageMessages] | None = None
+    ) -> None:
+        """Serves until it is cancelled. `make` makes the pictures, in a thread, once the address is `ready`.
+
+        Raises SssgenError where the port is in use or three.js is missing, and as `make` does.
+        """
         self.library = library()
         if not 0 <= port <= MOST_PORT:
             raise failure(
@@ -87,14 +106,22 @@ class PreviewServer:
                 raise failure(f"port {port} cannot be used: {error.strerror or error}", hint) from None
             self.port = site._server.sockets[0].getsockname()[1]
             ready(self.url)
-            if opened and not await asyncio.to_thread(webbrowser.open, self.url):
-                ready("no browser was found: open this address in one")
+            opening = asyncio.create_task(self._open_browser(ready)) if opened else None
+            if make is not None:
+                async with self._making:
+                    self.talk = await asyncio.to_thread(make)
+            if opening is not None:
+                await opening
             await self._watch()
         finally:
             for page in list(self.pages):
                 with contextlib.suppress(Exception):
                     await page.close()
             await runner.cleanup()
+
+    async def _open_browser(self, ready: Callable[[str], None]) -> None:
+        if not await asyncio.to_thread(webbrowser.open, self.url):
+            ready("no browser was found: open this address in one")
 
     # Requests
 
@@ -124,7 +151,13 @@ class PreviewServer:
         return response
 
     async def _index(self, request: Any) -> Any:
-        text = (PAGE / "index.html").read_text(encoding="utf-8").replace(IMPORT_MAP, self.library.import_map())
+        files = [
+            *(f"library/{name}" for name in self.library.files),
+            *(f"page/{name}" for name in FILES if name.endswith(".js")),
+        ]
+        named = "\n".join(f'<link rel="modulepreload" href="{file}">' for file in files)
+        text = (PAGE / "index.html").read_text(encoding="utf-8")
+        text = text.replace(IMPORT_MAP, self.library.import_map()).replace(MODULES, named)
         return self.web.Response(text=text, content_type=FILES["index.html"], charset="utf-8")
 
     async def _page_file(self, request: Any) -> Any:
@@ -143,7 +176,8 @@ class PreviewServer:
         return self.web.Response(body=path.read_bytes(), content_type=type_, charset="utf-8")
 
     async def _piece(self, request: Any) -> Any:
-        data = self.talk.piece(request.match_info["digest"])
+        async with self._making:
+            data = self.talk.piece(request.match_info["digest"])
         if data is None:  # of a picture that is no longer shown
             raise self.web.HTTPNotFound
         return self.web.Response(body=data, content_type="application/octet-stream")
@@ -163,7 +197,7 @@ class PreviewServer:
                         reply = await asyncio.to_thread(self.talk.reply, message)
                     if reply:
                         await page.send_json(reply)
-                    elif text := await self._change(functools.partial(self.talk.answer, message, data)):
+                    elif text := await self._change(functools.partial(self._answer, message, data)):
                         await page.send_json({"kind": "said", "text": text})
                 except (ValueError, TypeError, KeyError, AttributeError):
                     await page.send_json({"kind": "error", "text": "the page sent a message that is not understood"})
@@ -173,6 +207,9 @@ class PreviewServer:
             sending.cancel()
             del self.pages[page]
         return page
+
+    def _answer(self, message: dict[str, Any], data: bytes) -> str:
+        return self.talk.answer(message, data)
 
     async def _send(self, page: Any, fresh: asyncio.Event) -> None:
         """Sends the newest pictures whenever there are new ones; a slow page misses those in between."""

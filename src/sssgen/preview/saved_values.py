@@ -18,7 +18,7 @@ from sssgen.material.model import Material
 from sssgen.material.roles import SECTIONS, allowed_roles
 from sssgen.material.values import read_value
 from sssgen.scene.bake_advice import is_scene
-from sssgen.scene.scene import Scene
+from sssgen.scene.scene import Light, Scene
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
@@ -170,6 +170,29 @@ def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], secti
             old["file"] = value
         else:
             table[name] = _value(value)
+    write_text(path, document.as_string())
+
+
+def save_lights(path: str, lights: Sequence[Light]) -> None:
+    """Writes the lights of a scene's file: those that it has get the new values, others are added or removed.
+
+    Raises SssgenError.
+    """
+    tomlkit = need("tomlkit", "tomlkit", "preview")
+    document = parse_document(path)
+    tables = document.get("light")
+    if not isinstance(tables, tomlkit.items.AoT):
+        tables = document["light"] = tomlkit.aot()
+    del tables[len(lights) :]
+    for index, light in enumerate(lights):
+        if index == len(tables):
+            tables.append(tomlkit.table())
+        key, other = ("direction", "position") if light.position is None else ("position", "direction")
+        tables[index].pop(other, None)
+        tables[index][key] = _value(light.position or light.direction or ())
+        tables[index]["color"] = _value(light.color)
+    if not lights:
+        del document["light"]
     write_text(path, document.as_string())
 
 

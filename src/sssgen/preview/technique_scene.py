@@ -8,7 +8,6 @@ import json
 import os
 import tempfile
 
-from sssgen.lab.measure.technique_chain import BODY, chain_of, reference_to, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.material_text import material_text
@@ -30,6 +29,8 @@ def is_technique(name: str) -> bool:
 
 def scene_of_technique(name: str) -> tuple[Scene, Material]:
     """The scene and the material that show a technique. Raises SssgenError."""
+    from sssgen.lab.measure.technique_chain import BODY, chain_of, reference_to
+
     technique = library.load(name)
     stages = chain_of(technique)
     folder, file = os.path.abspath(_temporary_folder().name), f"{technique.name}.toml"
@@ -53,6 +54,8 @@ def _function(name: str) -> str:
 @functools.cache
 def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
     """The folder of these materials, with the pictures that they read; it is removed at the end of the process."""
+    from sssgen.lab.measure.technique_chain import write_pictures
+
     folder = tempfile.TemporaryDirectory(prefix="sssgen_preview_")
     write_pictures(folder.name)
     return folder

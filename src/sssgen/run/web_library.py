@@ -19,7 +19,10 @@ NPM = {
     "three/tsl": "three/build/three.tsl.js",
     "three/addons/controls/OrbitControls.js": "three/examples/jsm/controls/OrbitControls.js",
     "three/addons/loaders/GLTFLoader.js": "three/examples/jsm/loaders/GLTFLoader.js",
+    "three/addons/loaders/HDRLoader.js": "three/examples/jsm/loaders/HDRLoader.js",
+    "three/addons/loaders/EXRLoader.js": "three/examples/jsm/loaders/EXRLoader.js",
     "three/addons/environments/RoomEnvironment.js": "three/examples/jsm/environments/RoomEnvironment.js",
+    "three/addons/libs/fflate.module.js": "three/examples/jsm/libs/fflate.module.js",
 }
 """What the page imports → the file among npm's packages. `library_bundle.js` exports the same."""
 VERSION = "0.187.0"

@@ -1,8 +1,8 @@
 """The cache folder. It contains results that another process can use; if it is lost, they are computed again.
 
-It contains three things, each for a measured gain of time (docs/architecture.md, Speed): the
-checked IR of each source file, the program of each material before its values are filled in, and the files of each
-`sssgen emit` command. Jinja keeps its compiled templates in the same folder.
+It contains four things, each for a measured gain of time (docs/architecture.md, Speed): the
+checked IR of each source file, the program of each material before its values are filled in, the files of each
+`sssgen emit` command, and the triangles of the preview's bodies. Jinja keeps its compiled templates in the same folder.
 
 `SSSGEN_CACHE` names another folder; an empty value turns the cache off. Entries are pickled, so an entry that somebody
 else writes could run code here: a folder that other users own or can write to is not used, and an entry is unpickled

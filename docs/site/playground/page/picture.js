@@ -3,7 +3,7 @@
 import { box, checkbox, list } from './preview/elements.js';
 import { FlatStage } from './preview/flat_stage.js';
 import { Panel } from './preview/panel.js';
-import { Stage } from './preview/stage.js';
+import { PLAIN, Stage } from './preview/stage.js';
 
 /** @typedef {import('./editor.js').Files} Files */
 /** @typedef {{ flat?: import('../../../../src/sssgen/preview/page_messages.js').Flat, controls: import('../../../../src/sssgen/preview/page_messages.js').Control[],
@@ -34,7 +34,7 @@ export class Picture {
     this.waiting = Promise.resolve();
     this.panel = new Panel(box('controls'), (property, numbers) => this.stage?.set(property, numbers));
     shape.addEventListener('change', () => this.next(() => this.draw()));
-    environment.addEventListener('change', () => this.stage?.environment(environment.checked));
+    environment.addEventListener('change', () => this.arrange());
     renderer.addEventListener('change', () => this.next(async () => { this.drop(); await this.draw(); }));
     this.ready = this.next(() => this.stageOf(renderer.value));
   }
@@ -56,7 +56,11 @@ export class Picture {
     const stage = new Stage(box('stage'), chosen, this.pieces.get);
     await stage.start();
     this.stage = stage;
+    this.arrange();
   }
+
+  /** Lights the body by its surroundings, or by the lamps alone. */
+  arrange() { this.stage?.arrange({ ...PLAIN, light: { ...PLAIN.light, kind: environment.checked ? 'studio' : 'none' } }); }
 
   drop() {
     this.stage?.dispose();

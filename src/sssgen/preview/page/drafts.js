@@ -19,12 +19,28 @@ export class Drafts {
     this.busy = false;
     this.again = false;
     this.sharp = false;  // whether the last picture has the full resolution
+    this.held = false;  // whether something else draws
+  }
+
+  /** Draws nothing until `release()`; waits for a picture that is under way. */
+  async hold() {
+    this.held = true;
+    clearTimeout(this.rest);
+    cancelAnimationFrame(this.asked);
+    this.asked = 0;
+    while (this.busy) await new Promise((done) => setTimeout(done, 5));
+  }
+
+  release() {
+    this.held = false;
+    this.ask();
   }
 
   /** A draft with the next frame of the page. */
   ask() {
     this.sharp = false;
     clearTimeout(this.rest);
+    if (this.held) return;
     if (this.busy) this.again = true;
     else this.asked ||= requestAnimationFrame(() => { this.asked = 0; this.draw(this.level); });
   }
@@ -42,7 +58,7 @@ export class Drafts {
    * @param {number} level */
   async draw(level) {
     const [start, turn] = [performance.now(), ++this.turn];
-    if (!this.stage.mesh) return;
+    if (!this.stage.mesh || this.held) return;
     this.busy = true;
     try {
       this.stage.resolution(SHARES[level]);
@@ -53,6 +69,7 @@ export class Drafts {
     }
     if (turn !== this.turn) return;
     this.adapt(level, performance.now() - start);
+    if (this.held) return;
     if (this.again) { this.again = false; this.ask(); }
     else if (level === 0) this.sharp = true;
     else this.rest = setTimeout(() => this.draw(level - 1), REST);

@@ -125,7 +125,7 @@ export class FlatStage {
     this.ask();
   }
 
-  environment() {}
+  arrange() {}
 
   /** @param {boolean} on  whether the time runs */
   run(on) {

@@ -10,10 +10,10 @@ import { TextureSlots } from './texture_slots.js';
 /** @typedef {import('../page_messages.js').Slot} Slot */
 /** @typedef {{ pieceOf: import('../page_messages.js').PieceOf, say: (text: string) => void, looked: (pane: Pane) => void,
  *   changed: (pane: Pane, property: string, numbers: number[]) => void, texture: (pane: Pane, row: Slot, file: File | null) => void,
- *   settings: () => { renderer: string, environment: boolean }, fallback: (renderer: string) => void }} Page
+ *   settings: () => { renderer: string, arranged: import('./stage.js').Settings }, fallback: (renderer: string) => void }} Page
  *   What a pane asks of the page. */
 /** @typedef {{ kind: string, start(): Promise<void>, show(picture: Picture, values: import('../page_messages.js').Values): Promise<void>,
- *   set(property: string, numbers: number[]): void, environment(on: boolean): void, ask(): void, dispose(): void,
+ *   set(property: string, numbers: number[]): void, arrange(settings: import('./stage.js').Settings): void, ask(): void, dispose(): void,
  *   orbit?: Stage['orbit'], camera?: Stage['camera'] }} AnyStage  What both kinds of stages have. */
 
 /** A picture, with its controls and its texture slots. */
@@ -73,8 +73,13 @@ export class Pane {
     }
   }
 
+  /** Starts a stage before there is a picture: a browser takes long for its first one. */
+  async prepare() {
+    this.stage ??= await this.stageFor({ flat: undefined }, this.page.settings().renderer);
+  }
+
   /** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said.
-   * @param {Picture} picture @param {string} kind  of `rendererOf`
+   * @param {Pick<Picture, 'flat'>} picture @param {string} kind  of `rendererOf`
    * @returns {Promise<AnyStage>} */
   async stageFor(picture, kind) {
     const { pieceOf, say, settings, fallback } = this.page;
@@ -82,7 +87,7 @@ export class Pane {
     const next = picture.flat ? new FlatStage(this.place, pieceOf) : new Stage(this.place, kind, pieceOf);
     try {
       await next.start();
-      next.environment(settings().environment);
+      next.arrange(settings().arranged);
       next.orbit?.addEventListener('change', () => { if (!this.busy) this.page.looked(this); });
       return next;
     } catch (error) {

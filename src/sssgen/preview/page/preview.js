@@ -4,18 +4,18 @@ import { Chain } from './chain.js';
 import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
 import { CostBox } from './cost.js';
-import { box, button, checkbox, list, make } from './elements.js';
+import { box, button, list, make } from './elements.js';
 import { EmittedText } from './emitted_text.js';
 import { FrameWatch } from './frame_time.js';
 import { Menus } from './menus.js';
 import { Pane } from './pane.js';
 import { SaveAs } from './save_as.js';
 import { Stage } from './stage.js';
+import { StageBar } from './stage_bar.js';
 
 /** @typedef {import('../page_messages.js').PictureMessage} PictureMessage */
 
 const [renderer, shape, beside] = [list('renderer'), list('shape'), list('beside')];
-const environment = checkbox('environment');
 const [save, saveAs, reset, undo] = [button('save'), button('save-as'), button('reset'), button('undo')];
 /** @type {Map<string, ArrayBuffer>} */
 const pieces = new Map();  // by their digests
@@ -40,7 +40,7 @@ const page = {
     return piece;
   },
 
-  settings: () => ({ renderer: renderer.value, environment: environment.checked }),
+  settings: () => ({ renderer: renderer.value, arranged: bar.settings }),
   fallback(kind) { renderer.value = kind; },
 
   changed(pane, property, numbers) {
@@ -58,6 +58,16 @@ const page = {
 
 /** Whether the second pane has the values of the first: the same material without guards. */
 const follows = () => panes.length > 1 && panes[0].last?.beside === 'guards';
+
+/** The stage of a pane that shows a body. @param {Pane} [pane] */
+const stageOf = (pane) => (pane?.stage instanceof Stage && pane.stage.mesh ? pane.stage : null);
+
+const bar = new StageBar(box('stage-bar'), {
+  stages: () => panes.flatMap((pane) => stageOf(pane) ?? []),
+  shown: () => stageOf(shownPane()),
+  say,
+  save: (lights) => python.send({ kind: 'lights', pane: shownPane().number, lights }),
+});
 
 const shownPane = () => panes[active] ?? panes[0];
 
@@ -117,7 +127,7 @@ function fill() {
   for (const id of ['open-presets', 'open-media']) button(id).disabled = !picture.copies;
   beside.replaceChildren(...Object.entries(besides).map(([value, text]) => new Option(text, value)));
   beside.value = pane.last.beside;
-  for (const id of ['shape-row', 'renderer-row', 'environment-row']) box(id).hidden = Boolean(picture.flat);
+  for (const id of ['shape-row', 'renderer-row']) box(id).hidden = Boolean(picture.flat);
   box('tabs').hidden = panes.length < 2;
   box('tabs').replaceChildren(...panes.filter((one) => one.last).map((one) => {
     const label = one.last?.label;
@@ -143,6 +153,7 @@ async function show(message) {
   pane.complaint = message.error || (reason && `the page cannot draw it: ${reason}`);
   complain();
   if (pane.number > 0) pane.follow(panes[0].stage);
+  bar.show(stageOf(shownPane()));
   if (!reason && pane.number === 0) document.body.dataset.version = String(message.version);
   const named = new Set(panes.flatMap((one) => one.named));
   for (const digest of pieces.keys()) if (!named.has(digest)) pieces.delete(digest);
@@ -150,6 +161,8 @@ async function show(message) {
 
 /** One picture after the other. */
 const next = (/** @type {() => unknown} */ work) => { waiting = waiting.then(work, work); return waiting; };
+
+next(() => { fit(1); return panes[0].prepare(); });
 
 const python = connect((message) => {
   if (message.kind === 'picture') {
@@ -212,13 +225,10 @@ const frames = new FrameWatch(() => {
 cost.measure = () => frames.measure();
 const emitted = new EmittedText(box('emitted'), (question) => python.send({ ...question, pane: active }));
 button('show-text').addEventListener('click', () => emitted.toggle(!emitted.open));
-onDrop(document.body, useMesh);
+onDrop(document.body, (file) => (bar.takes(file) ? bar.useFile(file) : useMesh(file)));
 onChoice(button('choose-mesh'), MESHES, useMesh);
 shape.addEventListener('change', () => python.send({ kind: 'shape', shape: shape.value }));
 beside.addEventListener('change', () => python.send({ kind: 'beside', beside: beside.value }));
-environment.addEventListener('change', () => {
-  for (const pane of panes) pane.stage?.environment(environment.checked);
-});
 renderer.addEventListener('change', () => next(async () => {
   for (const pane of panes) {
     pane.stop();
@@ -241,4 +251,4 @@ reset.addEventListener('click', () => {
 });
 addEventListener('error', (event) => say(event.message));
 addEventListener('unhandledrejection', (event) => say(String(event.reason?.message ?? event.reason)));
-globalThis.preview = { panes, get stage() { return panes[0]?.stage; }, get panel() { return panes[0].panel; } };
+globalThis.preview = { panes, bar, get stage() { return panes[0]?.stage; }, get panel() { return panes[0].panel; } };

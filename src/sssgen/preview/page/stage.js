@@ -1,20 +1,26 @@
-// The picture: a body with an emitted material, lamps that can be dragged, an eye that goes around.
+// The picture: a body with an emitted material in its lamps and surroundings, an eye that goes around.
 
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { ballOf, coarseOf, geometryOf } from './coarse_body.js';
 import { Drafts } from './drafts.js';
+import { Ground } from './ground.js';
+import { Lamps } from './lamps.js';
 import { materialOf, programOf, update, valueOf } from './material.js';
 import { rendererOf } from './renderer.js';
+import { Surroundings } from './surroundings.js';
 
 /** @typedef {import('../page_messages.js').BodyPicture} BodyPicture */
 /** @typedef {import('./coarse_body.js').Body} Body */
 /** @typedef {import('./material.js').EmittedMaterial} EmittedMaterial */
-/** @typedef {THREE.PointLight | THREE.SpotLight | THREE.DirectionalLight} Lamp */
-/** @typedef {THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial> & { userData: { lamp: Lamp } }} Handle */
+/** @typedef {{ light: import('./surroundings.js').Light, ground: boolean, lampsShown: boolean }} Settings
+ *   `lampsShown`: also those behind the body. */
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
-const HANDLE = 0.035;  // of half the picture's height
+/** What a stage shows besides its picture, until a person changes it. */
+export const PLAIN = {
+  light: { kind: 'none', panorama: null, strength: 1, turn: 0, background: false, blur: 0.4 }, ground: false, lampsShown: false,
+};
 
 /** One renderer on one canvas. Another renderer is another stage. */
 export class Stage {
@@ -36,14 +42,19 @@ export class Stage {
     this.pieceOf = pieceOf;
     /** @type {Map<string, THREE.DataTexture | THREE.Data3DTexture>} */
     this.textures = new Map();  // by the digests of their levels
-    /** @type {Lamp[]} */
-    this.lamps = [];
-    /** @type {Handle[]} */
-    this.handles = [];
+    /** @type {Settings} */
+    this.settings = PLAIN;
+    this.angle = 0;  // by which the body is turned, in radians
+    this.model = new THREE.Matrix4();  // of the body that is not turned
+    /** @type {string[]} */
+    this.shades = [];  // of the background, from below
     this.drawn = 0;  // frames
     this.view = 35;  // the scene's field of view, in degrees
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera();
+    this.lamps = new Lamps(this);
+    this.surroundings = new Surroundings(this);
+    this.ground = new Ground(this);
     this.drafts = new Drafts(this);
   }
 
@@ -56,7 +67,7 @@ export class Stage {
     this.root.replaceChildren(canvas);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener('change', () => this.ask());
-    this.follow(canvas);
+    this.lamps.listen(canvas);
     this.sizes = new ResizeObserver(() => this.fit());
     this.sizes.observe(this.root);
     this.fit();
@@ -64,12 +75,17 @@ export class Stage {
 
   fit() {
     const { clientWidth: width, clientHeight: height } = this.root;
-    if (!width || !height) return;
+    if (!width || !height || this.drafts.held) return;
+    this.size(width, height);
+    this.ask();
+  }
+
+  /** @param {number} width @param {number} height */
+  size(width, height) {
     this.share = 0;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.widen();
-    this.ask();
   }
 
   /** Draws from now on at a share of the full resolution.
@@ -90,10 +106,12 @@ export class Stage {
   /** Shows a picture; `values` are the numbers that differ from the file's.
    * @param {BodyPicture} picture @param {import('../page_messages.js').Values} values */
   async show(picture, values) {
-    const body = await this.pieceOf(picture.body);
+    const [body, ...filled] = await Promise.all([
+      this.pieceOf(picture.body),
+      ...picture.textures.map(async ({ property, texels }) => (texels ? [[property, await this.textureOf(texels)]] : [])),
+    ]);
     /** @type {Record<string, THREE.Texture>} */
-    const textures = {};
-    for (const { property, texels } of picture.textures) if (texels) textures[property] = await this.textureOf(texels);
+    const textures = Object.fromEntries(filled.flat());
     const program = programOf(picture);
     const kept = this.mesh && this.program === program;
     const material = kept ? this.mesh.material : await materialOf(picture, values, textures);
@@ -104,13 +122,15 @@ export class Stage {
     this.program = program;
     this.forget(new Set(Object.values(textures)));
     this.place(picture, body, material);
-    this.light(picture);
+    this.lamps.show(picture);
+    this.arrange(this.settings);
     if (this.shown !== `${picture.name} ${picture.shape}`) this.look(picture);
     this.shown = `${picture.name} ${picture.shape}`;
     this.picture = picture;
     this.renderer.toneMapping = picture.tone_mapping ? THREE.NeutralToneMapping : THREE.LinearToneMapping;
     this.renderer.toneMappingExposure = picture.exposure;
-    this.root.style.background = `linear-gradient(to top, ${picture.background.map(styleOf).join(', ')})`;
+    this.shades = picture.background.map(styleOf);
+    this.root.style.background = `linear-gradient(to top, ${this.shades.join(', ')})`;
     await this.drafts.now();
   }
 
@@ -122,15 +142,41 @@ export class Stage {
       this.bodies = [geometry, coarseOf(geometry)];
       this.mesh = new THREE.Mesh(geometry, material);
       this.mesh.userData.body = picture.body;
-      this.mesh.castShadow = this.mesh.receiveShadow = true;
+      this.mesh.castShadow = true;
       this.mesh.matrixAutoUpdate = false;
       this.scene.add(this.mesh);
     } else {
       this.exchange(material);
     }
-    this.mesh.matrix.fromArray(picture.model);
+    this.mesh.receiveShadow = picture.shadows;
+    this.model.fromArray(picture.model);
+    this.mesh.matrix.copy(this.model);
     this.mesh.updateMatrixWorld(true);
-    material.envMap = this.sky ?? null;
+    this.ball = ballOf(this.mesh);
+    this.turn(this.angle);
+  }
+
+  /** Turns the body about the upright axis through its middle.
+   * @param {number} angle  in radians */
+  turn(angle) {
+    this.angle = angle;
+    if (!this.mesh) return;
+    const { x, y, z } = this.ball.center;
+    this.mesh.matrix.makeTranslation(x, y, z).multiply(new THREE.Matrix4().makeRotationY(angle))
+      .multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z)).multiply(this.model);
+    this.mesh.updateMatrixWorld(true);
+    this.ground.place();
+  }
+
+  /** Shows the surroundings and the ground that a person chose.
+   * @param {Settings} settings */
+  arrange(settings) {
+    this.settings = settings;
+    this.surroundings.show(settings.light);
+    this.lamps.even.intensity = settings.light.kind === 'none' ? Math.PI : 0;  // a scene's ambient light stands for surroundings
+    this.ground.show(settings.ground);
+    this.lamps.castShadows();
+    this.ask();
   }
 
   /** Gives the body another material.
@@ -138,42 +184,6 @@ export class Stage {
   exchange(material) {
     if (this.mesh.material !== material) this.mesh.material.dispose();
     this.mesh.material = material;
-  }
-
-  /** @param {BodyPicture} picture */
-  light(picture) {
-    const key = JSON.stringify([picture.lights, picture.ambient, picture.shadows, picture.body]);
-    if (key === this.lit) return;
-    this.lit = key;
-    this.scene.remove(...this.lamps, ...this.handles, ...(this.even ? [this.even] : []));
-    this.even = new THREE.AmbientLight(new THREE.Color(...picture.ambient), Math.PI);
-    // three's lights are irradiance, those of a scene radiance: their ratio is pi
-    this.lamps = picture.lights.map(({ position: [x, y, z, w], color }) => {
-      const lamp = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color(...color), Math.PI);
-      lamp.position.set(x, y, z);
-      return lamp;
-    });
-    if (picture.shadows && this.lamps.length) this.shadow(this.lamps[0]);
-    this.handles = this.lamps.map((lamp) => {
-      const color = lamp.color.clone().multiplyScalar(1 / Math.max(lamp.color.r, lamp.color.g, lamp.color.b, 1e-6));
-      const handle = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color, toneMapped: false }));
-      return Object.assign(handle, { userData: { lamp } });
-    });
-    this.scene.add(this.even, ...this.lamps, ...this.handles);
-  }
-
-  /** Shadows of a lamp, in a map around the body.
-   * @param {Lamp} lamp */
-  shadow(lamp) {
-    const ball = ballOf(this.mesh);
-    lamp.castShadow = true;
-    lamp.shadow.mapSize.set(2048, 2048);
-    lamp.shadow.normalBias = 0.01 * ball.radius;
-    if (lamp instanceof THREE.DirectionalLight) {
-      const reach = 1.1 * ball.radius;
-      Object.assign(lamp.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0, far: 6 * reach });
-      lamp.position.normalize().multiplyScalar(3 * reach);
-    }
   }
 
   /** @param {BodyPicture} picture */
@@ -190,14 +200,6 @@ export class Stage {
     const control = this.picture?.controls.find((one) => one.property === property);
     if (!control || !this.mesh) return;
     this.mesh.material[property] = valueOf(control, numbers);
-    this.ask();
-  }
-
-  /** @param {boolean} on */
-  environment(on) {
-    this.sky = on ? sky() : null;
-    this.scene.environment = this.sky;
-    if (this.mesh) { this.mesh.material.envMap = this.sky; this.mesh.material.needsUpdate = true; }
     this.ask();
   }
 
@@ -228,71 +230,14 @@ export class Stage {
 
   ask() { this.drafts.ask(); }
 
-  frame() {
+  /** @param {boolean} [handles]  whether the lamps have handles */
+  frame(handles = true) {
     if (!this.mesh) return;
-    this.hold();
+    this.lamps.hold(this.ball, handles);
     const away = this.camera.position.distanceTo(this.ball.center);  // bodies are millimetres or kilometres large
     Object.assign(this.camera, { near: 0.005 * away, far: 50 * away }).updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
     this.drawn += 1;
-  }
-
-  /** The lamps' handles: a point light's at its place, that of a light from afar beside the body. */
-  hold() {
-    const ball = ballOf(this.mesh);
-    for (const handle of this.handles) {
-      const { lamp } = handle.userData;
-      handle.position.copy(lamp.position);
-      if (lamp instanceof THREE.DirectionalLight) handle.position.normalize().multiplyScalar(1.35 * ball.radius).add(ball.center);
-      handle.scale.setScalar(HANDLE * handle.position.distanceTo(this.camera.position) * Math.tan(this.view * Math.PI / 360));
-      lamp.updateMatrixWorld();
-    }
-    this.ball = ball;
-  }
-
-  /** Lets the pointer move the lamps.
-   * @param {HTMLCanvasElement} canvas */
-  follow(canvas) {
-    const rays = new THREE.Raycaster();
-    /** @type {Handle | null} */
-    let held = null;
-    const aim = (/** @type {PointerEvent} */ event) => {
-      const box = canvas.getBoundingClientRect();
-      rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height), this.camera);
-    };
-    canvas.addEventListener('pointerdown', (event) => {
-      aim(event);
-      held = /** @type {Handle | undefined} */ (rays.intersectObjects(this.handles)[0]?.object) ?? null;
-      if (!held) return;
-      this.orbit.enabled = false;
-      canvas.setPointerCapture(event.pointerId);
-    }, { capture: true });
-    canvas.addEventListener('pointermove', (event) => {
-      if (!held) return;
-      aim(event);
-      const { lamp } = held.userData;
-      if (lamp instanceof THREE.DirectionalLight) {
-        const off = lamp.position.length();
-        lamp.position.copy(this.onSphere(rays.ray, 1.35 * this.ball.radius, held.position)).sub(this.ball.center).setLength(off);
-      }
-      else rays.ray.intersectPlane(new THREE.Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new THREE.Vector3()), lamp.position), lamp.position);
-      this.ask();
-    });
-    const release = () => { held = null; this.orbit.enabled = true; };
-    canvas.addEventListener('pointerup', release);
-    canvas.addEventListener('pointercancel', release);
-  }
-
-  /** The point of a sphere around the body on a ray, on the side where the handle is; beside it the nearest one.
-   * @param {THREE.Ray} ray @param {number} radius @param {THREE.Vector3} before */
-  onSphere(ray, radius, before) {
-    const middle = ray.direction.dot(this.ball.center.clone().sub(ray.origin));
-    const nearest = ray.at(middle, new THREE.Vector3());
-    const off = nearest.distanceTo(this.ball.center);
-    if (off >= radius) return nearest.sub(this.ball.center).setLength(radius).add(this.ball.center);
-    const half = Math.sqrt(radius * radius - off * off);
-    const behind = ray.direction.dot(before.clone().sub(this.ball.center)) > 0;
-    return ray.at(middle + (behind ? half : -half), new THREE.Vector3());
   }
 
   dispose() {
@@ -302,6 +247,9 @@ export class Stage {
     this.bodies?.forEach((one) => one.dispose());
     this.mesh?.material.dispose();
     this.textures.forEach((texture) => texture.dispose());
+    this.lamps.lights = [];
+    this.surroundings.dispose();
+    this.ground.dispose();
     this.renderer?.dispose();
   }
 }
@@ -309,19 +257,4 @@ export class Stage {
 /** @param {number[]} linear */
 function styleOf(linear) {
   return `#${new THREE.Color().fromArray(linear.map((number) => Math.min(Math.max(number, 0), 1))).getHexString()}`;
-}
-
-/** A studio as an environment: dark below, bright above, with a window. */
-function sky() {
-  const [width, height] = [64, 32];
-  const data = new Float32Array(width * height * 4);
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++) {
-      const up = (y + 0.5) / height;
-      const window = x > 38 && x < 50 && y > 17 && y < 27 ? 6 : 0;
-      data.set([0.08 + 0.25 * up + window, 0.09 + 0.27 * up + window, 0.1 + 0.32 * up + window, 1], 4 * (y * width + x));
-    }
-  }
-  const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.FloatType);
-  return Object.assign(texture, { mapping: THREE.EquirectangularReflectionMapping, magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true });
 }
