@@ -41,6 +41,7 @@ PERMITTED = {
         "the choice of techniques for a foreign material",
         CHOSEN_FOR_IMPORTS,
     ),
+    "presets/kept_material.py": ("a field of the neutral record", {"base_color"}),
     "presets/preset_stages.py": (
         "the stages of ready materials",
         {

@@ -67,7 +67,7 @@ def engine_files(request: Request, folder: str) -> Files:
     files: Files = dict(compiled.files)
     if request.target == "webgpu":
         files |= webgpu_page.files(engine)
-        values["air"] = webgpu_page.AIR
+        values |= {"air": webgpu_page.AIR, "glow": webgpu_page.glow()}
     if engine.is_page:
         values["package"] = engine.package
         values["import_map"], libraries = _import_map(request.target)

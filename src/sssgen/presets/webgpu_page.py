@@ -8,11 +8,10 @@ import os
 from sssgen.bake.cube_dds import cube_bytes
 from sssgen.interchange.material_writer import SURROUNDINGS
 from sssgen.material.material_loading import parse_material
-from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import compile
 from sssgen.presets.engines import Engine
-from sssgen.presets.project_templates import Files
+from sssgen.presets.project_templates import Files, render
 from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render.environment_maps import irradiance_map, reflection_map
 from sssgen.scene.environment import Environment, digest
@@ -20,7 +19,6 @@ from sssgen.support.paths import place
 
 AIR = [0.007, 0.0075, 0.0091, 1.0]
 """The linear colour of the page behind all bodies."""
-_STONE = [0.0232, 0.0212, 0.0194, 1.0]
 _MODULES = ("geometry.js", "material.js")
 """The modules of the example page that this page has, too."""
 
@@ -28,7 +26,7 @@ _MODULES = ("geometry.js", "material.js")
 def files(engine: Engine) -> Files:
     """The cube maps of the surroundings, the shader of the ground, and modules of the example page."""
     result: Files = _cubes()
-    ground = parse_material(_ground(), "ground.toml")
+    ground = parse_material(render("webgpu/ground.toml", glow=glow()), "ground.toml")
     shell = [option for option in engine.shell if not option.startswith("environment")]
     result |= compile(with_shell(ground, shell), "wgsl").files
     for name in _MODULES:
@@ -45,19 +43,11 @@ def _cubes() -> Files:
     return {file: cube_bytes(half(texture).levels) for file, texture in maps.items()}
 
 
-def _ground() -> str:
-    """A matt ground that shines as the air where its emission texture is white."""
-    stages = [
-        MaterialSection("surface", "base_color", (("tint", _STONE),)),
-        MaterialSection("surface", "pbr_constants", (("metalness", 0.0), ("surface_roughness", 0.9))),
-        MaterialSection("surface", "specular_level", (("dielectric_specular", 0.0),)),
-        MaterialSection("surface", "emission_map", (("emission_color", _before_tone_mapping(AIR[:3])),)),
-    ]
-    return material_text("ground", stages, "Ground", "The ground of a page, which fades into the air.")
+def glow() -> list[float]:
+    """The dark colour that the tone mapping turns into that of the air.
 
-
-def _before_tone_mapping(color: list[float]) -> list[float]:
-    """The dark colour that the tone mapping `khronos_neutral` turns into `color`: it takes x - 6.25 x^2 off all
-    components, where x is the least one (Khronos PBR Neutral Tone Mapper, below .08)."""
+    It takes x - 6.25 x^2 off all components, where x is the least one (Khronos PBR Neutral Tone Mapper, below .08).
+    """
+    color = AIR[:3]
     least = math.sqrt(min(color) / 6.25)
-    return [part + least - min(color) for part in color]
+    return [round(part + least - min(color), 6) for part in color]
