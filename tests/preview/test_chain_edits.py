@@ -128,6 +128,14 @@ def test_saved_values_are_taken_back_too(talk: PageMessages, ring: Path) -> None
     assert ring.read_bytes() == before
 
 
+@pytest.mark.parametrize("more", [{"quality": "good", "size_mm": -3.0}, {"quality": "perfect"}, {"preset": "butter"}])
+def test_faulty_settings_of_a_preset_change_nothing(talk: PageMessages, ring: Path, more: dict[str, object]) -> None:
+    before = ring.read_bytes()
+    with pytest.raises((SssgenError, ValueError)):
+        edit(talk, "preset", **{"preset": "wax", "quality": "good", **more})
+    assert ring.read_bytes() == before
+
+
 def test_an_example_is_not_edited() -> None:
     with pytest.raises(SssgenError, match="comes with sssgen"):
         edit(PageMessages(Pane("jade_ring")), "add", technique="sheen_constants")

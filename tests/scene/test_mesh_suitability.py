@@ -42,7 +42,7 @@ def test_holes_and_parts_inside_each_other_matter_for_light_inside_alone(tmp_pat
     nested = mesh(tmp_path / "nested.obj", 1.0, 0.5, 0.25)
     assert mesh_warnings(nested, MeshNeeds()) == []
     (warning,) = mesh_warnings(nested, INSIDE)
-    assert "2 of its 3 parts are inside another" in warning
+    assert "2 of the mesh's 3 parts are inside another" in warning
 
 
 def test_parts_beside_each_other_suit(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from sssgen.material.medium_look import look_keys
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import DESCRIPTIONS, requirements
 from sssgen.presets.preset import preset
+from sssgen.presets.preset_list import MENU_QUALITIES
 from sssgen.presets.preset_stages import preset_stages
 from sssgen.preview.bodies import body_size
 from sssgen.preview.saved_values import parse_document, section_of
@@ -31,6 +32,8 @@ from sssgen.support.toml_source import Path
 
 SECTIONS = ("coordinates", "thickness", "surface", "translucency")
 """The sections that the menus change: those of a material that an engine lights."""
+SMALLEST_MM, LARGEST_MM = 1e-3, 1e6
+"""The sizes of bodies, as of `sssgen use`."""
 _SUFFIX = ".sss"
 
 
@@ -153,10 +156,16 @@ def _with_preset(chain: ChainText, scene: Scene, edit: Mapping[str, Any]) -> str
     chosen = preset(str(edit["preset"]))
     if scene.geometry is None:
         raise failure("this material makes its own rays, and a preset is for a body")
-    size = body_size(scene.geometry, float(edit.get("size_mm") or chosen.size_mm))
+    quality, longest = str(edit["quality"]), float(edit.get("size_mm") or chosen.size_mm)
+    if quality not in MENU_QUALITIES:
+        raise ValueError(quality)
+    if not SMALLEST_MM <= longest <= LARGEST_MM:
+        hint = f"its size is from {SMALLEST_MM:g} to {LARGEST_MM:g} mm"
+        raise failure(f"a body cannot be {longest:g} mm large", hint)
+    size = body_size(scene.geometry, longest)
     has_sides = "two_sided" in chain.document.data["material"]
     settings = ["two_sided = true"] if any(chosen.sheet) and not has_sides else []
-    return chain.with_chain(preset_stages(chosen, str(edit["quality"]), size), settings)
+    return chain.with_chain(preset_stages(chosen, quality, size), settings)
 
 
 def _scene_without(scene: Scene, material: Material, changed: Material) -> dict[str, str]:

@@ -61,7 +61,7 @@ def _nested_shells(places: Array, corners: npt.NDArray[np.int64]) -> list[str]:
     inner = _count_inside(places, shells[:MOST_SHELLS])
     if not inner:
         return []
-    parts = f"{inner} of its {len(shells)} parts {'are' if inner > 1 else 'is'} inside another"
+    parts = f"{inner} of the mesh's {len(shells)} parts {'are' if inner > 1 else 'is'} inside another"
     return [f"{parts}: lengths inside the body are wrong there; make one surface of them, or delete the inner ones"]
 
 
