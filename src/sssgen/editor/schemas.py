@@ -121,8 +121,10 @@ def scene_schema() -> Schema:
         "background": _background(),
         "geometry": {"$ref": "#/definitions/geometry"},
         "bodies": {
-            "description": "the scenes whose bodies are drawn together", "type": "array",
-            "maxItems": scene_keys.MAX_BODIES, "items": {"type": "string"},
+            "description": "the scenes whose bodies are drawn together",
+            "type": "array",
+            "maxItems": scene_keys.MAX_BODIES,
+            "items": {"type": "string"},
         },
         "camera": _table(_keys(scene_keys.CAMERA)),
         "light": {"type": "array", "maxItems": scene_keys.MAX_LIGHTS, "items": _light()},
