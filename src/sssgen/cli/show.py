@@ -89,9 +89,10 @@ def _kinds_of(name: str) -> list[str]:
 
 
 def _is_material(path: str) -> bool:
-    """Whether a file describes a material, in a table; a scene names one, in a text."""
+    """Whether a file describes a material, in a table; a scene names one, in a text, or bodies."""
     from sssgen.support.paths import posix
     from sssgen.support.text_files import read_text
     from sssgen.support.toml_source import parse
 
-    return not isinstance(parse(read_text(path, posix(path)), posix(path)).data.get("material", {}), str)
+    data = parse(read_text(path, posix(path)), posix(path)).data
+    return "bodies" not in data and not isinstance(data.get("material", {}), str)

@@ -20,7 +20,8 @@ SUFFIXES = {".sss": TECHNIQUE, ".glsl": GLSL, ".frag": GLSL, ".vert": GLSL}
 _OF_MATERIALS = "|".join(("material", *(section for section in SECTIONS if section not in ("geometry", "environment"))))
 _MATERIAL = re.compile(rf"^[ \t]*\[{{1,2}}(?:{_OF_MATERIALS})\b", re.MULTILINE)
 _SCENE = re.compile(
-    r"^[ \t]*(?:material[ \t]*=|\[camera\]|\[\[light\]\]|\[shell\]|\[medium\]|\[geometry\][^\[]*^[ \t]*kind[ \t]*=)",
+    r"^[ \t]*(?:(?:material|bodies)[ \t]*=|\[camera\]|\[\[light\]\]|\[shell\]|\[medium\]|"
+    r"\[geometry\][^\[]*^[ \t]*kind[ \t]*=)",
     re.MULTILINE,
 )
 _STAGE = re.compile(r"^[ \t]*technique[ \t]*=", re.MULTILINE)

@@ -121,6 +121,12 @@ def scene_schema() -> Schema:
         "material": {"anyOf": [{"enum": list(examples())}, {"type": "string", "pattern": r"\.toml$"}]},
         "background": _background(),
         "geometry": {"$ref": "#/definitions/geometry"},
+        "bodies": {
+            "description": "the scenes whose bodies are drawn together",
+            "type": "array",
+            "maxItems": scene_keys.MAX_BODIES,
+            "items": {"type": "string"},
+        },
         "camera": _table(_keys(scene_keys.CAMERA)),
         "light": {"type": "array", "maxItems": scene_keys.MAX_LIGHTS, "items": _light()},
         "shell": _table({role: {"enum": list(choices(role))} for role in scene_keys.SHELL}),
@@ -134,7 +140,7 @@ def scene_schema() -> Schema:
         "$schema": DIALECT,
         "title": "a scene of sssgen",
         "type": "object",
-        "anyOf": [{"required": [key]} for key in ("material", "medium", "inlay")],
+        "anyOf": [{"required": [key]} for key in ("material", "bodies", "medium", "inlay")],
         "properties": _keys(scene_keys.KEYS) | tables,
         "additionalProperties": False,
         "definitions": {"geometry": _geometry()},
@@ -144,7 +150,8 @@ def scene_schema() -> Schema:
 def _background() -> Schema:
     color = _key(scene_keys.KEYS["background"])
     ends = {"type": "array", "items": color, "minItems": 2, "maxItems": 2}
-    return {"description": "a colour, or [bottom, top]", "anyOf": [color, ends]}
+    shown = {"enum": ["environment"]}
+    return {"description": "a colour, [bottom, top], or the environment", "anyOf": [color, ends, shown]}
 
 
 def _light() -> Schema:

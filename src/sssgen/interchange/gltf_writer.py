@@ -210,6 +210,9 @@ class GltfWriter:
             self.set(self.extension("transmission"), "transmissionFactor", weight[0], 0.0, "the light that enters")
         volume = self.extension("volume")
         unknown = thickness is None and texture is None
+        if unknown:
+            roles = [stage.technique.role for stage in self.material.stages]
+            self.parameters.used_stages |= {number for number, role in enumerate(roles) if role == "thickness"}
         depth = 1.0 if thickness is None else thickness[0]
         note = "the program measures it: 1 m stands for it" if unknown else ""
         self.set(volume, "thicknessFactor", depth, 0.0, "thickness", note)
