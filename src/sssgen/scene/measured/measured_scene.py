@@ -132,7 +132,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
         document.error(whole, "the scene has no geometry to measure", "add [geometry]")
     document.reporter.check()
     assert scene.geometry is not None
-    medium = _medium(scene) if "medium" in scene.measured else None
+    medium = medium_of(scene) if "medium" in scene.measured else None
     inlay = _inlay(scene) if "inlay" in scene.measured else None
     environment = read_environment(scene) if "environment" in scene.measured else None
     for number, light in enumerate(scene.lights):
@@ -157,8 +157,10 @@ def inside(geometry: Geometry, position: tuple[float, float, float]) -> bool:
     return bool(geometry.distance((to_object[:3, :3] @ np.array(position) + to_object[:3, 3])[None])[0] <= 0.0)
 
 
-def _medium(scene: Scene) -> Medium | None:
-    table = Table(scene.document, ("medium",), scene.measured["medium"], MEDIUM)
+def medium_of(scene: Scene) -> Medium | None:
+    """The medium that a scene's table states; reports its errors, None after one in its preset."""
+    document = scene.document
+    table = Table(document, ("medium",), scene.measured["medium"], MEDIUM)
     # the presets have measured indices, but a scene without this key has no boundary
     ior, roughness = table.number("ior", 1.0), table.number("roughness", 0.0)
     if roughness > 0.0 and ior == 1.0:
@@ -174,6 +176,9 @@ def _medium(scene: Scene) -> Medium | None:
             if name in media.media()
             else None
         )
+    if "scattering" not in table.content:
+        hint = 'write preset = "marble", say; or scattering and absorption per world unit'
+        document.error(document.place("medium").value, "the medium has neither a preset nor scattering", hint)
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0))
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0))
     anisotropy = table.number("anisotropy", 0.0)
