@@ -10,14 +10,18 @@ import pytest
 
 import bake_meshes as meshes
 from bake_meshes import bake, facts, write
-from sssgen.bake import memory_check
+from sssgen.bake import fluence, memory_check
+from sssgen.cli import bake_fluence
 from sssgen.cli.main import main
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import compile
 from sssgen.run import backends
 from sssgen.run.render.scene_render import render
+from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import body_identity
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Mesh, Union
 from sssgen.scene.scene_loading import load
-from sssgen.support.diagnostics import SssgenError
+from sssgen.support.diagnostics import Diagnostic, SssgenError
 
 for package in ("trimesh", "igl", "embreex", "scipy", "psutil"):
     pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[bake]'")
@@ -110,9 +114,16 @@ def test_a_bake_fits_its_body_wherever_it_is() -> None:
             "[[light]]", "[parameters]\nscattering_albedo = [0.9, 0.8, 0.1]\n[[light]]",
             ["the scattering_albedo (0.8889, 0.8, 0.7273)", "has (0.9, 0.8, 0.1)"],
         ),
+        (
+            "[[light]]", "[parameters]\nmean_free_path = 0.3\n[[light]]",
+            ["the mean_free_path 0.2", "the material has 0.3", "mean_free_path = 0.3", "leave mean_free_path out"],
+        ),
         ("direction = [0.4, 0.8, 0.1]", "position = [0.1, 0.1, 0.0]", ["light 1 is inside the body", "from afar"]),
     ],
-    ids=["another size", "another shape", "another key", "another scale", "extinction", "albedo", "light inside"],
+    ids=[
+        "another size", "another shape", "another key", "another scale", "extinction", "albedo", "mean free path",
+        "light inside",
+    ],
 )  # fmt: skip
 def test_a_bake_of_something_else_is_an_error_with_both_values(old: str, new: str, parts: list[str]) -> None:
     text = message(SCENE.replace(old, new))
@@ -132,6 +143,104 @@ def test_a_material_with_another_medium_is_refused(
     # rounding, as in a value that was copied from the JSON, is no difference
     Path("stone.toml").write_text(MATERIAL + "extinction = [4.52, 5.0, 5.49]\n", encoding="utf-8")
     assert main(["emit", "stone.toml", "--target", "wgsl", "-o", "out"]) == 0
+
+
+OCTAVES = """
+[[translucency]]
+technique = "interior_octaves"
+bind = { light_path = "depth_map_path" }
+"""
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["before", "after"])
+def test_a_stage_that_shares_a_parameter_of_the_medium_is_compared(stone: Path, first: bool) -> None:
+    """Whichever stage is first, its mean free path is that of the light in the volume, too."""
+    baked = MATERIAL[MATERIAL.index("[translucency]") :].replace("[translucency]", "[[translucency]]")
+    head = MATERIAL[: MATERIAL.index("[translucency]")]
+    for length, fits in (("0.2", True), ("0.7", False)):
+        other = f"{OCTAVES}mean_free_path = {length}\n"
+        Path("stone.toml").write_text(head + (other + baked if first else baked + other), encoding="utf-8")
+        if fits:
+            load_material("stone.toml")
+            continue
+        with pytest.raises(SssgenError) as caught:
+            load_material("stone.toml")
+        (wrong,) = caught.value.diagnostics
+        assert "is baked for the mean_free_path 0.2, and the material has 0.7" in wrong.message
+        assert wrong.source_line == "mean_free_path = 0.7"
+
+
+@pytest.mark.usefixtures("stone")
+def test_a_scene_is_compared_where_another_stage_declares_the_shared_parameter() -> None:
+    """The scene names the volume, and the stage before it has the parameter in the shader."""
+    bare = MATERIAL.replace('fluence_volume = "stone.npy"\n', "").replace(
+        "[translucency]", f"{OCTAVES}[[translucency]]"
+    )
+    Path("stone.toml").write_text(bare, encoding="utf-8")
+    named = SCENE + '[textures]\nfluence_volume = "stone.npy"\n'
+    loaded = load_material("stone.toml")
+    Path("scene.toml").write_text(named, encoding="utf-8")
+    shell = shell_of(load("scene.toml"), loaded, compile(loaded, "numpy").reflection)
+    assert shell.parameters["mean_free_path"] == pytest.approx((0.2,))
+    assert "the mean_free_path 0.2" in message(f"{named}[parameters]\nmean_free_path = 0.7\n")
+
+
+def warnings_of(text: str) -> list[Diagnostic]:
+    Path("scene.toml").write_text(text, encoding="utf-8")
+    return list(render(load("scene.toml"), backends.get("numpy")).warnings)
+
+
+@pytest.mark.usefixtures("stone")
+def test_a_medium_that_was_changed_after_the_bake_is_a_warning() -> None:
+    assert warnings_of(SCENE + MEDIUM) == []
+    cases = (
+        (
+            MEDIUM.replace("1.5]", "3.5]"),
+            "extinction (4.5, 5, 5.5) and not (4.5, 5, 7.5), albedo (0.8889, 0.8",
+        ),
+        (f"{MEDIUM}ior = 1.4\n", "for another medium: ior 1 and not 1.4"),
+        (f"{MEDIUM}anisotropy = 0.5\n", "for another medium: anisotropy 0 and not 0.5"),
+    )
+    for medium, said in cases:
+        (warning,) = warnings_of(SCENE + medium)
+        assert warning.severity == "warning" and "'stone.npy' is baked" in warning.message and said in warning.message
+        assert warning.source_line == "[medium]" and warning.span.line == SCENE.count("\n") + 1
+        assert "bake again" in warning.hint
+
+
+@pytest.mark.usefixtures("stone")
+def test_a_medium_without_values_is_no_medium_of_a_bake() -> None:
+    assert "the medium has neither a preset nor scattering" in message(f"{SCENE}[medium]\n")
+
+
+@pytest.mark.parametrize(
+    ("medium", "said"),
+    [
+        ("[medium]\n", "the medium has neither a preset nor scattering"),
+        ("[medium]\nabsorption = [0.5, 1.0, 1.5]\n", "the medium has neither a preset nor scattering"),
+    ],
+)
+def test_a_bake_has_no_default_medium(folder: Path, medium: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "body.toml").write_text(SCENE.replace('material = "stone.toml"', "") + medium, encoding="utf-8")
+    text = refused(capsys, "body.toml", *FEW)
+    assert said in text and f"body.toml:{SCENE.count(chr(10)) + 1}:1" in text and 'preset = "marble"' in text
+
+
+def test_a_bake_says_which_boundary_it_has(folder: Path) -> None:
+    """A mesh has the measured index of a medium; a scene has the ior of its [medium], which is 1 without this key."""
+    body = SCENE.replace('material = "stone.toml"', "")
+    marble = '[medium]\npreset = "marble"\nunit_mm = 2.0\n'
+    (folder / "matched.toml").write_text(body + marble, encoding="utf-8")
+    (folder / "refracting.toml").write_text(f"{body}{marble}ior = 1.5\n", encoding="utf-8")
+    (folder / "own.toml").write_text(body + MEDIUM, encoding="utf-8")
+    for path, name, said in (
+        ("box.obj", "marble", "the surface refracts, which a scene states by ior = 1.5 in [medium]"),
+        ("refracting.toml", "", "the surface refracts, which a scene states by ior = 1.5 in [medium]"),
+        ("matched.toml", "", "the surface does not refract; for that of marble write ior = 1.5 in [medium]"),
+        ("own.toml", "", "the surface does not refract"),
+    ):
+        medium = fluence.body(path, name, 2.0).medium
+        assert medium is not None and bake_fluence.boundary(fluence.medium_facts(medium)) == said
 
 
 @pytest.mark.usefixtures("stone")
@@ -269,7 +378,9 @@ def test_an_opaque_voxel_is_a_warning_and_the_volume_is_finite(
     scene = SCENE.replace('material = "stone.toml"', "") + MEDIUM.replace("[4.0, 4.0, 4.0]", "[30.0, 4.0, 4.0]")
     Path("dense.toml").write_text(scene, encoding="utf-8")
     assert main(["bake", "fluence", "dense.toml", "-o", "out.npy", "--light", "0,1,0", *FEW]) == 0
-    assert "warning: a voxel is opaque in one channel: use more voxels" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "warning: a voxel is opaque in one channel: use more voxels" in text
+    assert "for the technique fluence_fixed: the surface does not refract" in text
     assert facts("out.npy")["opaque_voxels"]
     assert np.isfinite(facts("out.npy")["parameters"]["fluence_scale"]).all()
 

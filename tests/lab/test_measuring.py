@@ -482,7 +482,8 @@ def test_a_picture_of_the_surroundings_has_its_directions(tmp_path: Path) -> Non
     pixels[30:34, 62:66] = [0.0, 5.0, 0.0]  # +x
     pixels[30:34, 94:98] = [0.0, 0.0, 7.0]  # +z
     np.save(tmp_path / "sky.npy", np.flipud(pixels))
-    text = '[medium]\nior = 1.3\n[geometry]\nkind = "ball"\n[environment]\nfile = "sky.npy"\nintensity = 2\n'
+    surroundings = "[environment]\nfile = 'sky.npy'\nintensity = 2\n"
+    text = '[medium]\npreset = "wax"\nior = 1.3\n[geometry]\nkind = "ball"\n' + surroundings
     scene = measured_scene.of_scene(parse_scene(text, tmp_path / "s.toml"), "s.toml")
     assert scene.environment is not None and scene.lit_by == ["picture of the surroundings"]
     light = scene.environment.sky()(np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]))

@@ -162,6 +162,8 @@ class MediumFacts(TypedDict):
     anisotropy: float
     """The mean cosine of scattering, -1 to 1"""
     ior: float
+    roughness: float
+    """Of the boundary, 0 to 1"""
 
 
 class FluenceError(TypedDict):

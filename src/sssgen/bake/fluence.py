@@ -193,7 +193,7 @@ def medium_facts(medium: Medium) -> MediumFacts:
     """The entry `medium` of a JSON file."""
     return {
         "name": medium.name, "extinction": [*medium.extinction], "albedo": [*medium.albedo],
-        "anisotropy": medium.anisotropy, "ior": medium.ior,
+        "anisotropy": medium.anisotropy, "ior": medium.ior, "roughness": medium.roughness,
     }  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from sssgen.support.progress import ProgressBar
 from sssgen.targets.texture_import import import_settings
 
 if TYPE_CHECKING:
-    from sssgen.bake.bake_facts import FluenceFacts
+    from sssgen.bake.bake_facts import FluenceFacts, MediumFacts
     from sssgen.lab.fluence.fluence_field import Settings
     from sssgen.scene.measured.measured_scene import MeasuredScene
 
@@ -88,12 +88,24 @@ def _relit(arguments: Namespace, scene: MeasuredScene, settings: Settings) -> Re
     return paths, facts, [*_lines(scene, facts), f"{len(data) / 1024:.0f} KiB"]
 
 
+def boundary(medium: MediumFacts) -> str:
+    """What the surface of a baked body does, and how a scene states the other boundary of a measured medium."""
+    from sssgen.scene.measured import media
+
+    name, index, presets = medium["name"], medium["ior"], media.media()
+    measured = presets[name].ior if name in presets else index
+    if index != 1.0:
+        return f"the surface refracts, which a scene states by ior = {index:g} in [medium]"
+    other = "" if measured == 1.0 else f"; for that of {name} write ior = {measured:g} in [medium]"
+    return f"the surface does not refract{other}"
+
+
 def _lines(scene: MeasuredScene, facts: FluenceFacts) -> list[str]:
     x, y, z = facts["texels"]
     lines = [
         f"{x} × {y} × {z} voxels; {facts['photons']} photons for each of {facts['directions']} "
         f"direction{'s' if facts['directions'] > 1 else ''}",
-        f"for the technique {facts['technique']}",
+        f"for the technique {facts['technique']}: {boundary(facts['medium'])}",
         f"standard error of a voxel {facts['error']['standard_error']:.2g} of the mean, before it is averaged",
     ]
     if getattr(scene.geometry, "inside_out", False):

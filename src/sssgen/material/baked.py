@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
@@ -18,8 +18,8 @@ FORMAT = 1
 MAX_BYTES = 2**20
 INDEX = "ior"
 """The parameter for the refractive index of a medium."""
-MEDIUM = ("extinction", "scattering_albedo")
-"""The parameters of a medium that light is traced with."""
+MEDIUM = ("extinction", "scattering_albedo", "mean_free_path", INDEX)
+"""The parameters of techniques that state the medium of a bake."""
 SAME = 0.01
 """The relative difference up to which two values of a medium are the same."""
 LARGEST = 1e30
@@ -30,6 +30,8 @@ UNITS = "materials use metres: scale the mesh to a few units"
 
 ParameterValue = float | list[float]
 """A number, or the components of a vector or a matrix; a matrix column by column."""
+Numbers = float | Sequence[float]
+"""A number, or the components of a vector."""
 
 
 class BakeFile(NamedTuple):
@@ -129,17 +131,27 @@ def check_medium(baked_texture: BakeFile, values: Mapping[str, tuple[float, ...]
         return
     for parameter in MEDIUM:
         raw, own = baked_texture.parameters.get(parameter), values.get(parameter)
-        if own is None or not isinstance(raw, list) or len(raw) != len(own):
-            continue
-        if any(abs(a - b) > SAME * max(abs(a), abs(b)) for a, b in zip(raw, own, strict=True)):
+        if raw is not None and own is not None and not is_same(raw, own):
             raise failure(
-                f"'{name}' is baked for the {parameter} {_text(raw)}, and the material has {_text(own)}",
+                f"'{name}' is baked for the {parameter} {text(raw)}, and the material has {text(own)}",
                 f"leave {parameter} out: it comes with the bake; or bake again with this medium",
             )
 
 
-def _text(components: Iterable[float]) -> str:
-    return f"({', '.join(f'{component:.4g}' for component in components)})"
+def is_same(a: Numbers, b: Numbers) -> bool:
+    """Whether two values of a medium are the same but for rounding."""
+    x, y = _components(a), _components(b)
+    return len(x) == len(y) and all(abs(p - q) <= SAME * max(abs(p), abs(q)) for p, q in zip(x, y, strict=True))
+
+
+def text(value: Numbers) -> str:
+    """A number, or a vector as `(1, 2, 3)`, for messages."""
+    numbers = [f"{component:.4g}" for component in _components(value)]
+    return numbers[0] if len(numbers) == 1 else f"({', '.join(numbers)})"
+
+
+def _components(value: Numbers) -> Sequence[float]:
+    return (value,) if isinstance(value, int | float) else value
 
 
 def _readers(quantity: str) -> str:

@@ -10,6 +10,7 @@ from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.lang.source_lines import keep_lines
 from sssgen.material import baked, library, roles, slots
+from sssgen.material.baked import BakeFile
 from sssgen.material.level_reader import level_count, stage_levels
 from sssgen.material.library import Technique
 from sssgen.material.medium_look import REPLACED, look_keys, medium_parameters
@@ -35,7 +36,7 @@ class _SharedValue(NamedTuple):
 
     value: object
     technique: str
-    line: int
+    span: Span
 
 
 def read_material(text: str, path: str, name: str) -> Material:
@@ -60,6 +61,8 @@ class _Reader:
         self.levels = 1
         self.shared: dict[tuple[Span, tuple[int, ...]], _SharedValue] = {}
         """By the place of a parameter, and the levels of detail of the stages that share it."""
+        self.media: list[tuple[BakeFile, Uniform, TechniqueUse, Uniform]] = []
+        """Baked textures, each with its uniform and stage, and a parameter that other stages may share."""
         self.complete = True
         """Whether every stage has a technique, so that the chain can be checked."""
 
@@ -84,6 +87,9 @@ class _Reader:
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
         self.levels = level_count(self.document, data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
+        for texture, uniform, stage, other in self.media:
+            if shared := self.shared.get((other.span, stage.levels)):
+                self.check_medium(texture, uniform, stage, other, shared.value, shared.span)
         if not any(section in data for section in roles.SECTIONS):
             hint = f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
             error(place("material").value, "the material has no stages", hint)
@@ -341,16 +347,18 @@ class _Reader:
                 baked.check(texture, uniform, stage.textures[uniform.name])
                 matched = stage.technique.attributes.matched
                 baked.check_boundary(texture, [other.name for other in uniforms], matched, stage.textures[uniform.name])
-                baked.check_medium(texture, stage.values, stage.textures[uniform.name])
             except SssgenError as error:
-                for diagnostic in error.diagnostics:
-                    self.document.error(span, diagnostic.message, diagnostic.hint)
+                self.add_errors(error, span)
                 continue
             for other in uniforms:
                 keys = (*parameter_names(other), *(key for key, names in REPLACED.items() if other.name in names))
-                own_values = [table[key] for key in keys if key in table]
+                given = [name for name in keys if name in table]
+                if other.name in stage.values:
+                    where = self.document.place(*path, given[0], "value").value if given else span
+                    self.check_medium(texture, uniform, stage, other, stage.values[other.name], where)
+                self.media.append((texture, uniform, stage, other))
                 if other.name in texture.parameters and all(
-                    isinstance(raw, dict) and "value" not in raw for raw in own_values
+                    isinstance(table[name], dict) and "value" not in table[name] for name in given
                 ):
                     try:
                         components = read_value(other, texture.parameters[other.name])
@@ -363,17 +371,31 @@ class _Reader:
                     stage = stage._replace(values={**stage.values, other.name: components})
         return stage
 
+    def check_medium(
+        self, texture: BakeFile, uniform: Uniform, stage: TechniqueUse, other: Uniform, value: object, span: Span
+    ) -> None:
+        """Reports a value of the parameter `other` that is not of the medium of a stage's baked texture `uniform`."""
+        if isinstance(value, tuple):
+            try:
+                baked.check_medium(texture, {other.name: value}, stage.textures[uniform.name])
+            except SssgenError as error:
+                self.add_errors(error, span)
+
+    def add_errors(self, error: SssgenError, span: Span) -> None:
+        for diagnostic in error.diagnostics:
+            self.document.error(span, diagnostic.message, diagnostic.hint)
+
     def share(self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
         """Checks that all stages agree about a parameter that they share.
 
         Those of included files and of bound functions are shared, textures in all levels of detail.
         """
         span = self.document.place(*path).value
-        shared = _SharedValue(value, stage.technique.name, span.line)
+        shared = _SharedValue(value, stage.technique.name, span)
         levels = () if isinstance(uniform.type, Sampler) else stage.levels
         earlier = self.shared.setdefault((uniform.span, levels), shared)
         if earlier.value != value:
-            message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
+            message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.span.line}"
             file = display_name(uniform.span.file)
             self.document.error(span, message, f"both stages share it (it is in {file}): give it once")
 

@@ -26,6 +26,7 @@ from sssgen.run.backends import Array, Backend
 from sssgen.run.render import pixel_mesh
 from sssgen.run.render.environment_maps import reflection_map
 from sssgen.run.render.eye_pictures import with_eye_pictures
+from sssgen.run.render.medium_warnings import medium_warnings
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
 from sssgen.run.render.scene_values import environment_of, shell_of
 from sssgen.run.render.screen_window import Window, whole_window, window_of
@@ -111,7 +112,9 @@ def render(
         samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
     else:
         samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
-    return _develop(scene, reflection, samples, hit)._replace(warnings=_warnings(scene, reflection))
+    return _develop(scene, reflection, samples, hit)._replace(
+        warnings=[*_warnings(scene, reflection), *medium_warnings(scene, material, reflection)]
+    )
 
 
 def _warnings(scene: Scene, reflection: Reflection) -> list[Diagnostic]:

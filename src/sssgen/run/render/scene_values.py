@@ -103,7 +103,7 @@ def _light_views(
 def _passes(scene: Scene, material: Material, reflection: Reflection) -> list[PassRecord]:
     """The passes whose pictures neither the scene nor the material has as a file."""
     textures = {texture["source_name"]: texture for texture in reflection["textures"]}
-    return [drawn for drawn in reflection["passes"] if not _file(scene, material, textures[drawn["texture"]])]
+    return [drawn for drawn in reflection["passes"] if not texture_file(scene, material, textures[drawn["texture"]])]
 
 
 def _drawn_lights(geometry: Geometry, lights: list[list[float]], layers: list[str], tiled: bool) -> DrawnLights:
@@ -196,7 +196,7 @@ def _check_own(
 ) -> None:
     """Raises SssgenError if a scene's value for a uniform is not that of the medium of its technique's baked light."""
     for texture in reflection["textures"]:
-        file = _file(scene, material, texture) if texture["technique"] == uniform["technique"] else ""
+        file = texture_file(scene, material, texture) if _reads(material, texture, uniform) else ""
         sidecar = baked.read_bake_file(file) if file else None
         if sidecar is not None:
             baked.check_medium(sidecar, {uniform["technique_name"]: value}, os.path.basename(file))
@@ -206,7 +206,7 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Reflection) 
     """The parameters of baked textures, for the transform of the scene's geometry."""
     parameters: dict[str, tuple[float, ...]] = {}
     for texture in reflection["textures"]:
-        file = _file(scene, material, texture)
+        file = texture_file(scene, material, texture)
         try:
             sidecar = baked.read_bake_file(file) if file else None
             if sidecar is None:
@@ -229,7 +229,7 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Reflection) 
                 scene.document.error(place, diagnostic.message, diagnostic.hint)
             continue
         for entry in reflection["uniforms"]:
-            if entry["technique"] == texture["technique"] and entry["technique_name"] in values:
+            if entry["technique_name"] in values and _reads(material, texture, entry):
                 raw = values[entry["technique_name"]]
                 try:
                     parameters[entry["source_name"]] = read_value(_uniform(material, entry), raw)
@@ -265,6 +265,15 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
             raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
         values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     return values
+
+
+def _reads(material: Material, texture: TextureRecord, entry: UniformRecord) -> bool:
+    """Whether a parameter is of the technique of a texture, alone or shared with others."""
+    if entry["technique"] == texture["technique"]:
+        return True
+    stages = [stage for stage in material.stages if stage.technique.name == texture["technique"]]
+    span = _uniform(material, entry).span
+    return any(uniform.span == span for stage in stages for uniform in stage.technique.uniforms)
 
 
 def _uniform(material: Material, entry: DeclarationRecord) -> Uniform:
@@ -303,7 +312,7 @@ def _textures(
             if scene.geometry is None:
                 raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
             textures[name] = _distances(chosen, scene.geometry)
-        elif not (file := _file(scene, material, texture)):
+        elif not (file := texture_file(scene, material, texture)):
             if (drawn := texture["drawn"] or "") in maps:
                 textures[name] = maps[drawn]
         elif not os.path.isfile(file):
@@ -316,7 +325,7 @@ def _textures(
     return textures
 
 
-def _file(scene: Scene, material: Material, texture: TextureRecord) -> str:
+def texture_file(scene: Scene, material: Material, texture: TextureRecord) -> str:
     """The file of a texture: the scene's, or else the one that the material suggests; '' if there is none."""
     chosen = scene.textures.get(texture["source_name"])
     if chosen is not None:

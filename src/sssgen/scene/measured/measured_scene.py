@@ -137,7 +137,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
         document.error(whole, "the scene has no geometry to measure", "add [geometry]")
     document.reporter.check()
     assert scene.geometry is not None
-    medium = _medium(scene) if "medium" in scene.measured else None
+    medium = medium_of(scene) if "medium" in scene.measured else None
     inlay = _inlay(scene) if "inlay" in scene.measured else None
     environment = read_environment(scene) if "environment" in scene.measured else None
     for number, light in enumerate(scene.lights):
@@ -162,8 +162,10 @@ def inside(geometry: Geometry, position: tuple[float, float, float]) -> bool:
     return bool(geometry.distance((to_object[:3, :3] @ np.array(position) + to_object[:3, 3])[None])[0] <= 0.0)
 
 
-def _medium(scene: Scene) -> Medium | None:
-    table = Table(scene.document, ("medium",), scene.measured["medium"], MEDIUM)
+def medium_of(scene: Scene) -> Medium | None:
+    """The medium that a scene's table states; reports its errors, None after one in its preset."""
+    document = scene.document
+    table = Table(document, ("medium",), scene.measured["medium"], MEDIUM)
     # the presets have measured indices, but a scene without this key has no boundary
     ior, roughness = table.number("ior", 1.0), table.number("roughness", 0.0)
     if roughness > 0.0 and ior == 1.0:
@@ -188,6 +190,11 @@ def _medium(scene: Scene) -> Medium | None:
 
 def _coefficients(table: Table, _: float) -> tuple[Any, Any]:
     """The absorption and the scattering that a table gives."""
+    if "scattering" not in table.content:
+        hint = 'write preset = "marble", say; color and depth; or scattering and absorption per world unit'
+        table.document.error(
+            table.document.place("medium").value, "the medium has neither a preset nor scattering", hint
+        )
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0))
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0))
     if not any(scattering):
