@@ -57,7 +57,7 @@ def _name(action: argparse.Action) -> str:
 def _as_rst(text: str) -> str:
     """Plain text in which nothing is markup but `code`."""
     pieces = re.split(r"(`[^`]*`)", " ".join(text.split()))
-    return "".join(piece if piece.startswith("`") else re.sub(r"([\\*_|])", r"\\\1", piece) for piece in pieces)
+    return "".join(piece if piece.startswith("`") else re.sub(r"([\\*_|:])", r"\\\1", piece) for piece in pieces)
 
 
 def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:

@@ -32,7 +32,7 @@ def folded(text: str, width: int = 90) -> str:
 
 def in_search(*words: str) -> list[str]:
     """Words that the search of the site leads to this place of a page first."""
-    return [line for word in dict.fromkeys(words) for line in (f"```{{index}} ! {word}", "```", "")]
+    return [line for word in dict.fromkeys(map(str.lower, words)) for line in (f"```{{index}} ! {word}", "```", "")]
 
 
 def number(value: object) -> str:
