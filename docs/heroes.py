@@ -1,7 +1,7 @@
-"""Draws hero pictures: docs/heroes/NAME.webp by the emitted shader in three.js, NAME_traced.webp path traced, and docs/heroes.md.
+"""Draws hero pictures, by the emitted shaders in three.js and path traced, into docs/heroes, and docs/heroes.md.
 
-python docs/heroes.py [NAME...] [--draft] [--frames N] [--samples N] [--only draw|trace]: minutes for each. Pictures in linear light
-are kept in build/heroes/NAME, so that what was drawn is not drawn again.
+python docs/heroes.py [NAME...] [--only STEP] [--frames N] [--samples N] [--size W] [--traced-size W]: many minutes for
+each on two cores. Light is kept in build/heroes/NAME: a larger number of samples continues what was traced.
 """
 
 from __future__ import annotations
@@ -10,38 +10,57 @@ import argparse
 import time
 
 import numpy as np
-
 from hero_stage import hero as hero_files
 from hero_stage.developed import develop
+from hero_stage.document import publish, write_document
 from hero_stage.drawn import draw
 from hero_stage.prepare import prepare
 from hero_stage.traced import trace
 
+STEPS = ("prepare", "draw", "trace", "publish")
+
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("names", nargs="*", metavar="NAME")
-    options.add_argument("--draft", action="store_true", help="a quarter of the pixels and few frames, in the build folder alone")
-    options.add_argument("--frames", type=int)
-    options.add_argument("--samples", type=int)
-    options.add_argument("--only", choices=("prepare", "draw", "trace"))
+    options.add_argument("names", nargs="*", metavar="NAME", help="heroes (default: all)")
+    options.add_argument("--only", choices=STEPS, help="one step (default: all)")
+    options.add_argument("--frames", type=int, default=64, help="of a picture by three.js")
+    options.add_argument("--samples", type=int, default=128, help="paths of a pixel")
+    options.add_argument("--size", type=int, default=1920, help="the width in pixels")
+    options.add_argument("--traced-size", type=int, default=960, help="the same of the path traced picture")
     arguments = options.parse_args()
-    size = (960, 540) if arguments.draft else (1920, 1080)
+    steps = [arguments.only] if arguments.only else STEPS
     for name in arguments.names or hero_files.heroes():
         hero = hero_files.load(name)
-        prepared = prepare(hero)
-        steps = {"draw": lambda: draw(prepared, size, arguments.frames or (10 if arguments.draft else 96))}
-        if hero.traced:
-            steps["trace"] = lambda: trace(prepared, size, arguments.samples or (32 if arguments.draft else 256))
-        for step, run in steps.items():
-            if arguments.only not in (None, step):
-                continue
-            start = time.monotonic()
-            linear = run()
-            suffix = f"{step}{'_draft' if arguments.draft else ''}"
-            np.save(prepared.folder / f"{suffix}.npy", linear)
-            develop(linear, hero.camera).save(prepared.folder / f"{suffix}.png")
-            print(f"{name}: {step} {time.monotonic() - start:.0f} s", flush=True)
+        if arguments.only != "publish":
+            prepared = prepare(hero)
+        if "draw" in steps:
+            _keep(hero, "draw", lambda prepared=prepared: draw(prepared, _size(arguments.size), arguments.frames))
+        if "trace" in steps and hero.traced:
+            _keep(
+                hero,
+                "trace",
+                lambda prepared=prepared: trace(prepared, _size(arguments.traced_size), arguments.samples),
+            )
+        if "publish" in steps:
+            publish(hero)
+    if "publish" in steps:
+        write_document()
+
+
+def _size(width: int) -> tuple[int, int]:
+    return width, width * 9 // 16
+
+
+def _keep(hero: hero_files.Hero, step: str, run: object) -> None:
+    """Stores the light of a step, and a PNG to look at."""
+    from hero_stage.assets import BUILD
+
+    start = time.monotonic()
+    linear = run()
+    np.save(BUILD / hero.name / f"{step}.npy", linear.astype(np.float32))
+    develop(linear, hero.camera).save(BUILD / hero.name / f"{step}.png")
+    print(f"{hero.name}: {step}, {time.monotonic() - start:.0f} s", flush=True)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,9 @@ def surroundings(name: str) -> npt.NDArray[np.float32]:
 
     package = BUILD / "assets" / "node_modules" / "@pmndrs" / "assets"
     if not package.is_dir():
-        subprocess.run(["npm", "install", "--prefix", BUILD / "assets", "--no-audit", "--no-fund", PICTURES], check=True)
+        subprocess.run(
+            ["npm", "install", "--prefix", BUILD / "assets", "--no-audit", "--no-fund", PICTURES], check=True
+        )
     text = (package / "hdri" / f"{name}.exr.js").read_text("utf-8")
     match = re.search(r"base64,([A-Za-z0-9+/=]+)", text)
     assert match, name

@@ -1,5 +1,6 @@
-"""From linear light to a picture: exposure, the glare of a lens, a film curve of the techniques, sRGB. Both pictures of a
-hero are developed alike.
+"""From linear light to a picture: exposure, the glare of a lens, a film curve of the techniques, sRGB.
+
+Both pictures of a hero are developed alike.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import sys
 from typing import Any
 
 import numpy as np
@@ -31,8 +32,9 @@ def draw(prepared: Prepared, size: tuple[int, int], frames: int) -> np.ndarray:
         page.goto(f"{address}?width={width}&height={height}")
         with contextlib.suppress(KeyboardInterrupt):
             page.evaluate("async () => { window.stage = await window.hero; }")
-            for _ in range(frames):
-                page.evaluate("() => { window.stage.frame(); window.stage.renderer.getContext().finish(); }")
+            for number in range(frames):
+                page.evaluate("() => { window.stage.frame(); }")
+                print(f"{prepared.hero.name}: frame {number + 1} of {frames}", file=sys.stderr, flush=True)
         pixels = base64.b64decode(page.evaluate("() => window.stage.picture()"))
         browser.close()
     for message in dict.fromkeys(messages):

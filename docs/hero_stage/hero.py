@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).parents[2] / "examples" / "heroes"
+FOLDER = Path(__file__).parents[1] / "heroes"
 Vector = tuple[float, float, float]
 
 

@@ -33,7 +33,7 @@ def _base() -> tuple[Array, np.ndarray, np.ndarray]:
 
 
 def body(targets: Mapping[str, float]) -> tuple[Array, np.ndarray]:
-    """Vertices and triangles of the body without eyes; `targets` are offsets, by their path without suffix, and shares."""
+    """Vertices and triangles of the body without eyes; `targets`: the path of offsets without suffix → a share."""
     _, faces, parts = _base()
     return _shaped(targets), faces[parts == 0]
 

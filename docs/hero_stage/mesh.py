@@ -12,6 +12,8 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 _RAYS = 48
 _CHUNK = 40_000
+_NEAR_FLOOR = 0.35
+"""How far away, in sizes of a body, a floor is dark: it lies in the shadow of the body."""
 
 
 @dataclass(frozen=True)
@@ -29,18 +31,20 @@ class Mesh:
     uv: Array = field(default_factory=lambda: np.zeros((0, 2)))
     """(n, 2), or none: (0, 0) is the lower left corner of a picture"""
 
-    def with_colors(self, tint: Array | float = 1.0, occluded: bool = True) -> Mesh:
-        """With factors of the surface, (n, 3) or one number, and with the share of the surroundings at each vertex."""
-        seen = self._openness() if occluded else np.ones(len(self.vertices))
+    def with_colors(self, tint: Array | float = 1.0, occluded: bool = True, floor: float | None = None) -> Mesh:
+        """With factors of the surface, (n, 3) or one number, and with the share of the surroundings at each vertex; a
+        floor at the height `floor` is in the way, too."""
+        seen = self._openness(floor) if occluded else np.ones(len(self.vertices))
         rgb = np.broadcast_to(tint if np.ndim(tint) else np.full(3, tint), (len(self.vertices), 3))
         return dataclasses.replace(self, colors=np.column_stack([rgb, seen]))
 
-    def _openness(self) -> Array:
+    def _openness(self, floor: float | None) -> Array:
         """The share of the hemisphere, weighted by the cosine, that is free at each vertex."""
         import trimesh
 
         body = trimesh.Trimesh(self.vertices, self.faces, process=False)
-        step = 2e-3 * float(np.ptp(self.vertices, axis=0).max())
+        size = float(np.ptp(self.vertices, axis=0).max())
+        step = 2e-3 * size
         random, open_share = np.random.default_rng(0), np.zeros(len(self.vertices))
         for start in range(0, len(self.vertices), _CHUNK):
             normals = self.normals[start : start + _CHUNK]
@@ -49,6 +53,9 @@ class Mesh:
             ways /= np.linalg.norm(ways, axis=-1, keepdims=True)
             ways += np.repeat(normals, _RAYS, axis=0)
             hits = body.ray.intersects_any(origins, ways)
+            if floor is not None:
+                reach = (origins[:, 1] - floor) / np.maximum(-ways[:, 1], 1e-9)
+                hits |= (ways[:, 1] < 0.0) & (reach < _NEAR_FLOOR * size)
             open_share[start : start + _CHUNK] = 1.0 - hits.reshape(-1, _RAYS).mean(axis=1)
         return open_share
 
@@ -69,6 +76,4 @@ def merged(*meshes: Mesh) -> Mesh:
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
     parts = ("vertices", "normals", "colors", "uv")
-    return Mesh(
-        faces=faces, **{name: np.concatenate([getattr(mesh, name) for mesh in meshes]) for name in parts}
-    )
+    return Mesh(faces=faces, **{name: np.concatenate([getattr(mesh, name) for mesh in meshes]) for name in parts})

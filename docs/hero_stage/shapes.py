@@ -115,7 +115,7 @@ def sheet(side: float, height: float = 0.0) -> Mesh:
     corners = np.array([[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]) * [0.5 * side, 1.0, 0.5 * side]
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     uv = corners[:, [0, 2]] * [1.0, -1.0]
-    return Mesh(corners + [0.0, height, 0.0], faces, np.tile([0.0, 1.0, 0.0], (4, 1)), uv=uv)
+    return Mesh(corners + np.array([0.0, height, 0.0]), faces, np.tile([0.0, 1.0, 0.0], (4, 1)), uv=uv)
 
 
 def smooth_step(low: float, high: float, x: Array) -> Array:
@@ -138,7 +138,9 @@ def veins(mesh: Mesh, cells: int, color: Sequence[float], frequency: float, seed
     bent = p + 0.35 * np.stack([noise(p, 0.7 * frequency, 3, seed + 10 * axis) for axis in range(3)], axis=-1)
     crossing = np.abs(noise(bent * [1.0, 0.7, 1.0], frequency, 3, seed + 50))
     thin = np.abs(noise(bent, 2.3 * frequency, 2, seed + 60))
-    dark = np.exp(-((crossing / 0.045) ** 2)) + 0.5 * np.exp(-((crossing / 0.2) ** 2)) * (0.5 + 0.5 * noise(p, 3.0, 2, seed))
+    dark = np.exp(-((crossing / 0.045) ** 2)) + 0.5 * np.exp(-((crossing / 0.2) ** 2)) * (
+        0.5 + 0.5 * noise(p, 3.0, 2, seed)
+    )
     dark = np.clip(dark + 0.35 * np.exp(-((thin / 0.04) ** 2)), 0.0, 1.0)
     return (1.0 - dark[:, None] * (1.0 - np.array(color))).reshape(*shape, 3)
 
@@ -148,7 +150,9 @@ def planks(side: int, color: Sequence[float], seed: int, count: int = 4) -> Arra
     across, along = (np.indices((side, side)) + 0.5) / side
     board = np.floor(across * count)
     random = np.random.default_rng(seed).uniform(size=(count, 3))[board.astype(int)]
-    place = np.stack([_LATTICE / 8 * along + 9.0 * random[..., 0], _LATTICE * across, 5.0 * random[..., 1]], axis=-1).reshape(-1, 3)
+    place = np.stack(
+        [_LATTICE / 8 * along + 9.0 * random[..., 0], _LATTICE * across, 5.0 * random[..., 1]], axis=-1
+    ).reshape(-1, 3)
     rings = np.sin(14.0 * (place[:, 1] * 0.18 + 0.6 * noise(place * [0.35, 0.12, 1.0], 1.0, 2, seed)))
     fibre = noise(place * [0.8, 5.0, 1.0], 1.0, 3, seed + 7)
     gap = np.exp(-((np.abs(across * count - np.round(across * count)) / 0.02) ** 2)).ravel()

@@ -61,7 +61,7 @@ class Sky {
   }
 }
 
-const BLACK = new THREE.MeshBasicMaterial({ color: 0 });
+const BLACK = new THREE.MeshBasicMaterial({ color: 0, shadowSide: THREE.FrontSide });
 const UNSEEN = new THREE.MeshBasicMaterial({ colorWrite: false, depthWrite: false });
 
 class Stage {
@@ -114,7 +114,7 @@ class Stage {
     };
     for (const body of hero.bodies) put(this.bodies, body, await this.#bodyMaterial(body));
     for (const prop of hero.props) put(this.props, prop, await this.#propMaterial(prop, Boolean(geometries[prop.mesh].attributes.color)));
-    for (const object of this.props) object.castShadow = !object.userData.material.emissive?.getHex();
+    for (const object of this.props) object.castShadow = !object.userData.material.userData.shines;
     scene.updateMatrixWorld();
     this.box = new THREE.Box3();
     for (const object of this.bodies) this.box.expandByObject(object);
@@ -147,7 +147,7 @@ class Stage {
 
   async #propMaterial({ color, roughness, metalness, emission, picture }, vertexColors) {
     if (Math.max(...emission) > 0) {
-      return Object.assign(new THREE.MeshBasicMaterial({ vertexColors }), { color: new THREE.Color(...emission), emissive: new THREE.Color(1, 1, 1) });
+      return new THREE.MeshBasicMaterial({ vertexColors, color: new THREE.Color(...emission), userData: { shines: true } });
     }
     const material = new THREE.MeshStandardMaterial({ roughness, metalness, vertexColors });
     material.color.setRGB(...color);
@@ -260,6 +260,7 @@ class Stage {
     this.count += 1;
     this.#opaque();
     this.#translucent();
+    renderer.readRenderTargetPixels(this.sums[0], 0, 0, 1, 1, new Float32Array(4)); // waits until it is drawn
   }
 
   /** The props under lamps and sky, and the sky; bodies are black. */
@@ -281,7 +282,9 @@ class Stage {
     scene.environment = this.nearby;
     for (const light of [...this.skies, ...this.glows]) light.visible = false;
     for (const object of this.props) object.material = BLACK;
+    this.renderer.shadowMap.autoUpdate = false; // the lamps have those of the frame's first half
     this.#add();
+    this.renderer.shadowMap.autoUpdate = true;
     for (const object of this.props) object.material = object.userData.material;
   }
 

@@ -1,7 +1,7 @@
 """The picture of a hero by Mitsuba 3: path tracing of the same meshes, media, lamps and surroundings, denoised by OIDN.
 
-A body has a rough dielectric boundary around a homogeneous medium; its vertices' colours are factors of the light that passes the
-boundary, and a volume of the model is a factor of the medium's albedo.
+A body has a rough dielectric boundary around a homogeneous medium; its vertices' colours are factors of the light that
+passes the boundary, and a volume of the model is a factor of the medium's albedo.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ def _body(mi: Any, prepared: Prepared, body: Body, to_world: np.ndarray) -> Any:
 
 
 def _sheet(mi: Any, prepared: Prepared, body: Body, to_world: np.ndarray) -> Any:
-    """A thin sheet: Lambert lobes on both sides, whose colour is a picture. Mitsuba shares the colour out as 2 - x and x."""
+    """A thin sheet: Lambert lobes on both sides. Mitsuba shares the colour of the picture out as 2 - x and x."""
     medium = body.medium
     both = medium["passed"] + medium["reflected"]
     picture = prepared.model.pictures[next(iter(body.pictures.values()))]

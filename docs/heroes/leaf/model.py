@@ -27,14 +27,15 @@ def side_veins(u: Array, v: Array) -> tuple[Array, Array]:
 
 
 @cache
-def cells() -> tuple[Array, Array, Array]:
-    """For each pixel of the picture: the gap between its nearest two cells, a random number, whether it is in a cell."""
+def cells() -> tuple[Array, Array]:
+    """For each pixel of the picture: the gap between its nearest two cells, and a random number of the cell."""
     random = np.random.default_rng(2)
     seeds = random.uniform(-0.02, 1.02, (7000, 2)) * [1.0, 1.0]
     rows, columns = (np.indices((SIDE, SIDE)) + 0.5) / SIDE
     places = np.stack([columns, rows], axis=-1).reshape(-1, 2)
     distances, nearest = cKDTree(seeds * [2.0, 1.3]).query(places * [2.0, 1.3], k=2)
-    return (distances[:, 1] - distances[:, 0]).reshape(SIDE, SIDE), random.uniform(size=7000)[nearest[:, 0]].reshape(SIDE, SIDE), distances[:, 0]
+    gap, shade = distances[:, 1] - distances[:, 0], random.uniform(size=7000)[nearest[:, 0]]
+    return gap.reshape(SIDE, SIDE), shade.reshape(SIDE, SIDE)
 
 
 def leaf_color() -> Array:
@@ -46,8 +47,10 @@ def leaf_color() -> Array:
     side, _ = side_veins(u + wobble, v)
     taper = np.clip(1.0 - 0.8 * np.abs(v) / np.maximum(width(u), 0.05), 0.1, 1.0)
     middle = np.abs(v + 0.5 * wobble) / np.maximum(0.02 * (1.15 - u), 0.003)
-    gap, shade, _ = cells()
-    veins = np.exp(-(middle**2)) + 0.9 * np.exp(-((side / (0.0075 * taper)) ** 2)) + 0.5 * np.exp(-((gap / 0.0035) ** 2))
+    gap, shade = cells()
+    veins = (
+        np.exp(-(middle**2)) + 0.9 * np.exp(-((side / (0.0075 * taper)) ** 2)) + 0.5 * np.exp(-((gap / 0.0035) ** 2))
+    )
     halo = 0.35 * np.exp(-((side / 0.03) ** 2))
     mottled = 0.5 + 0.35 * noise(p, 2.2, 4, seed=5).reshape(u.shape) + 0.22 * (shade - 0.5)
     young, old = np.array([0.36, 0.62, 0.03]), np.array([0.12, 0.36, 0.015])
@@ -81,7 +84,12 @@ def leaf(count: int, seed: int) -> Mesh:
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     faces = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
     uv = np.stack([u, 0.5 + v / 1.3], axis=-1)
-    stalk = meshed(lambda q: capsule(q, (0, 0.4, 0.08), (0, -0.12, 0.0), 0.022, 0.016), (-0.05, -0.2, -0.06), (0.05, 0.45, 0.14), 40)
+    stalk = meshed(
+        lambda q: capsule(q, (0, 0.4, 0.08), (0, -0.12, 0.0), 0.022, 0.016),
+        (-0.05, -0.2, -0.06),
+        (0.05, 0.45, 0.14),
+        40,
+    )
     stalk = Mesh(stalk.vertices, stalk.faces, stalk.normals, uv=np.tile([0.3, 0.5], (len(stalk.vertices), 1)))
     return merged(Mesh(vertices.reshape(-1, 3), faces, normals.reshape(-1, 3), uv=uv.reshape(-1, 2)), stalk)
 
@@ -89,7 +97,10 @@ def leaf(count: int, seed: int) -> Mesh:
 def twig(p: Array) -> Array:
     bent = p + np.stack([0.0 * p[:, 0], 0.1 * np.sin(1.7 * p[:, 0]), 0.06 * np.sin(2.3 * p[:, 0])], axis=-1)
     wood = capsule(bent, (-3.6, 0.9, -0.1), (3.4, -0.25, 0.05), 0.06, 0.03)
-    knots = [capsule(bent, (x, 0.31 - 0.164 * x, 0), (x + 0.1, 0.35 - 0.164 * x, 0.0), 0.07, 0.03) for x in (-2.4, -1.3, -0.2, 0.9, 2.0)]
+    knots = [
+        capsule(bent, (x, 0.31 - 0.164 * x, 0), (x + 0.1, 0.35 - 0.164 * x, 0.0), 0.07, 0.03)
+        for x in (-2.4, -1.3, -0.2, 0.9, 2.0)
+    ]
     return joined(wood, *knots, blend=0.06) + 0.008 * noise(p * [1.0, 4.0, 4.0], 6.0, 3)
 
 

@@ -35,4 +35,7 @@ def bear(p: Array) -> Array:
 
 
 def meshes(cells: int) -> dict[str, Mesh]:
-    return {"bear": meshed(bear, (-0.36, -0.04, -0.24), (0.36, 1.04, 0.42), cells).with_colors(), "table": sheet(14.0)}
+    return {
+        "bear": meshed(bear, (-0.36, -0.04, -0.24), (0.36, 1.04, 0.42), cells).with_colors(floor=0.0),
+        "table": sheet(14.0),
+    }

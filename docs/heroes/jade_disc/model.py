@@ -56,7 +56,10 @@ def volumes(meshes: dict[str, Mesh]) -> dict[str, np.ndarray]:
     p, shape = lattice_points(meshes["disc"], 150)
     bent = p + 0.3 * np.stack([noise(p, 0.9, 3, seed) for seed in (1, 2, 3)], axis=-1)
     cloud = np.clip(0.5 + 0.9 * noise(bent, 1.1, 3, 7), 0.0, 1.0)[:, None]
-    vein = np.exp(-((noise(bent, 0.8, 4, 21) / 0.06) ** 2))[:, None] * np.clip(0.3 + 1.2 * noise(p, 0.7, 2, 9), 0, 1)[:, None]
+    vein = (
+        np.exp(-((noise(bent, 0.8, 4, 21) / 0.06) ** 2))[:, None]
+        * np.clip(0.3 + 1.2 * noise(p, 0.7, 2, 9), 0, 1)[:, None]
+    )
     speck = np.clip((noise(p, 14.0, 2, 30) - 0.75) / 0.2, 0.0, 1.0)[:, None]
     color = cloud * np.array([1.0, 1.0, 1.0]) + (1.0 - cloud) * np.array([0.9, 0.97, 0.93])
     color = color * (1.0 - vein * (1.0 - np.array([0.97, 0.84, 0.66]))) * (1.0 - 0.25 * speck)

@@ -50,7 +50,9 @@ def head(cells: int):  # a distance function of units of the hero
 def meshes(cells: int) -> dict[str, Mesh]:
     low, high = (-0.8, -0.03, -0.95), (0.8, 2.3, 1.1)
     stone = meshed(head(min(cells, 170)), low, high, cells).with_colors()
-    plinth = meshed(lambda p: box(p, (0, -0.42, 0.0), (0.78, 0.415, 0.78), 0.02), (-0.9, -0.9, -0.9), (0.9, 0.05, 0.9), cells // 3)
+    plinth = meshed(
+        lambda p: box(p, (0, -0.42, 0.0), (0.78, 0.415, 0.78), 0.02), (-0.9, -0.9, -0.9), (0.9, 0.05, 0.9), cells // 3
+    )
     return {"head": stone, "plinth": plinth, "floor": sheet(30.0, -0.84)}
 
 

@@ -6,7 +6,15 @@ import numpy as np
 from hero_stage.mesh import Mesh
 from hero_stage.shapes import Array, capsule, cut, cylinder, ellipsoid, joined, meshed, noise, planks, sheet, sphere
 
-RUNS = [(20, 0.5, 0.05), (75, 0.95, 0.062), (112, 0.28, 0.045), (160, 0.7, 0.055), (230, 0.4, 0.05), (265, 1.05, 0.06), (318, 0.62, 0.05)]
+RUNS = [
+    (20, 0.5, 0.05),
+    (75, 0.95, 0.062),
+    (112, 0.28, 0.045),
+    (160, 0.7, 0.055),
+    (230, 0.4, 0.05),
+    (265, 1.05, 0.06),
+    (318, 0.62, 0.05),
+]
 """Of wax: an angle in degrees, a length, a radius."""
 
 
@@ -35,7 +43,9 @@ def wax(p: Array) -> Array:
 def flame(p: Array) -> Array:
     up = np.clip((p[:, 1] - 1.33) / 0.46, 0.0, 1.0)
     radius = 0.15 * np.sqrt(up + 0.03) * (1.0 - up) ** 0.8
-    return 0.6 * (np.linalg.norm(p - np.stack([0.02 * up, np.clip(p[:, 1], 1.33, 1.79), 0 * up], axis=-1), axis=-1) - radius)
+    return 0.6 * (
+        np.linalg.norm(p - np.stack([0.02 * up, np.clip(p[:, 1], 1.33, 1.79), 0 * up], axis=-1), axis=-1) - radius
+    )
 
 
 def dish(p: Array) -> Array:
@@ -53,7 +63,12 @@ def meshes(cells: int) -> dict[str, Mesh]:
     blue, warm = np.array([0.1, 0.12, 0.5]), np.array([1.0, 0.62, 0.22])
     share = np.clip(up / 0.22, 0.0, 1.0)[:, None]
     color = blue * (1 - share) * 0.25 + warm * share * (1.0 - 0.35 * up[:, None])
-    wick = meshed(lambda p: capsule(p, (0, 1.1, 0), (0.015, 1.42, 0.0), 0.016, 0.011), (-0.06, 1.05, -0.06), (0.08, 1.48, 0.06), 60)
+    wick = meshed(
+        lambda p: capsule(p, (0, 1.1, 0), (0.015, 1.42, 0.0), 0.016, 0.011),
+        (-0.06, 1.05, -0.06),
+        (0.08, 1.48, 0.06),
+        60,
+    )
     bead = meshed(lambda p: sphere(p, (0, 0, 0), 1.0), (-1.1,) * 3, (1.1,) * 3, 20)
     return {
         "wax": meshed(wax, (-0.75, -0.03, -0.72), (0.75, 1.5, 0.72), cells).with_colors(),
