@@ -65,7 +65,9 @@ class Mesh:
 
         body = trimesh.Trimesh(self.vertices, self.faces, vertex_normals=self.normals, process=False)
         if len(self.colors):
-            body.visual = trimesh.visual.ColorVisuals(body, vertex_colors=np.rint(255.0 * np.clip(self.colors, 0, 1)))
+            body.visual = trimesh.visual.ColorVisuals(
+                body, vertex_colors=np.rint(255.0 * np.clip(self.colors, 0, 1)).astype(np.uint8)
+            )
         if len(self.uv):
             body.visual = trimesh.visual.TextureVisuals(uv=self.uv)
         path.write_bytes(trimesh.exchange.gltf.export_glb(body, include_normals=True))
