@@ -12,18 +12,20 @@ import time
 import numpy as np
 from hero_stage import hero as hero_files
 from hero_stage.developed import develop
-from hero_stage.document import publish, write_document
-from hero_stage.drawn import draw
+from hero_stage.document import publish, publish_loop, write_document
+from hero_stage.drawn import draw, draw_loop
 from hero_stage.prepare import prepare
 from hero_stage.traced import trace
 
 STEPS = ("prepare", "draw", "trace", "publish")
+LOOP = 16, (854, 480)
+"""The pictures of a loop, and their size in pixels."""
 
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("names", nargs="*", metavar="NAME", help="heroes (default: all)")
-    options.add_argument("--only", choices=STEPS, help="one step (default: all)")
+    options.add_argument("--only", choices=(*STEPS, "loop"), help="one step (default: all but the loop)")
     options.add_argument("--frames", type=int, default=64, help="of a picture by three.js")
     options.add_argument("--samples", type=int, default=128, help="paths of a pixel")
     options.add_argument("--size", type=int, default=1920, help="the width in pixels")
@@ -42,6 +44,8 @@ def main() -> None:
                 "trace",
                 lambda prepared=prepared: trace(prepared, _size(arguments.traced_size), arguments.samples),
             )
+        if "loop" in steps:
+            publish_loop(hero, draw_loop(prepared, LOOP[1], arguments.frames, LOOP[0]))
         if "publish" in steps:
             publish(hero)
     if "publish" in steps:

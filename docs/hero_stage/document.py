@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-from hero_stage.assets import BODY, BUILD, PICTURES
+from hero_stage.assets import BUILD, PICTURES
 from hero_stage.hero import Hero, load
 from sssgen.scene.pictures.picture_difference import compare
 
@@ -17,6 +18,8 @@ PICTURES_FOLDER = DOCS / "heroes"
 _LARGEST = 500_000
 """Bytes of a picture."""
 _SMALL = (640, 360)
+_DURATION = 125
+"""Of a picture of a loop, in milliseconds."""
 
 _HEAD = """# Heroes
 
@@ -35,8 +38,7 @@ samples are few, and its picture is denoised (Open Image Denoise). The error is 
 0 where they are the same.
 
 Models are our own, procedural, in `docs/heroes/NAME/model.py`. The surroundings are pictures of Poly Haven from the
-npm package `{pictures}` (CC0-1.0); the head is the base mesh and the targets of MakeHuman from the PyPI package
-`{body}` (its folder `mpfb2`, CC0-1.0). They are downloaded while drawing.
+npm package `{pictures}` (CC0-1.0), which is downloaded while drawing.
 """
 
 
@@ -62,12 +64,25 @@ def publish(hero: Hero) -> None:
     (PICTURES_FOLDER / f"{hero.name}.json").write_text(json.dumps(facts) + "\n", "utf-8")
 
 
+def publish_loop(hero: Hero, pictures: Iterable[np.ndarray]) -> None:
+    """Writes the loop of a hero, whose lamps go around it, into the documents."""
+    from hero_stage.developed import develop
+
+    first, *others = [develop(picture, hero.camera) for picture in pictures]
+    first.save(
+        PICTURES_FOLDER / f"{hero.name}_loop.webp", save_all=True, append_images=others, duration=_DURATION, loop=0,
+        quality=80, method=6,
+    )  # fmt: skip
+
+
 def write_document() -> None:
     """docs/heroes.md, of all heroes whose pictures are in the documents."""
-    parts = [_HEAD.format(pictures=PICTURES, body=BODY)]
+    parts = [_HEAD.format(pictures=PICTURES)]
     for file in sorted(PICTURES_FOLDER.glob("*.json")):
         hero, facts = load(file.stem), json.loads(file.read_text("utf-8"))
         parts.append(f"## {hero.title}\n\n{hero.doc}\n\n![{hero.title}](heroes/{hero.name}.webp)\n")
+        if (PICTURES_FOLDER / f"{hero.name}_loop.webp").is_file():
+            parts.append(f"![{hero.title} while the lamp goes around](heroes/{hero.name}_loop.webp)\n")
         if "flip" in facts:
             pair = " | ".join(f"![]({f'heroes/{hero.name}{end}.webp'})" for end in ("_small", "_traced"))
             parts.append(f"| sssgen in three.js | path traced |\n|---|---|\n| {pair} |\n")

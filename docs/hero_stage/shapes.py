@@ -132,19 +132,6 @@ def lattice_points(mesh: Mesh, cells: int) -> tuple[Array, tuple[int, int, int]]
     return np.stack([x, y, z], axis=-1).reshape(-1, 3), (counts[2], counts[1], counts[0])
 
 
-def veins(mesh: Mesh, cells: int, color: Sequence[float], frequency: float, seed: int) -> Array:
-    """A volume of veins as in marble, (z, y, x, 3): 1, and `color` where noise that noise has bent crosses 0."""
-    p, shape = lattice_points(mesh, cells)
-    bent = p + 0.35 * np.stack([noise(p, 0.7 * frequency, 3, seed + 10 * axis) for axis in range(3)], axis=-1)
-    crossing = np.abs(noise(bent * [1.0, 0.7, 1.0], frequency, 3, seed + 50))
-    thin = np.abs(noise(bent, 2.3 * frequency, 2, seed + 60))
-    dark = np.exp(-((crossing / 0.045) ** 2)) + 0.5 * np.exp(-((crossing / 0.2) ** 2)) * (
-        0.5 + 0.5 * noise(p, 3.0, 2, seed)
-    )
-    dark = np.clip(dark + 0.35 * np.exp(-((thin / 0.04) ** 2)), 0.0, 1.0)
-    return (1.0 - dark[:, None] * (1.0 - np.array(color))).reshape(*shape, 3)
-
-
 def planks(side: int, color: Sequence[float], seed: int, count: int = 4) -> Array:
     """A picture of boards, (side, side, 3), that repeats: fibres along x, a gap between boards."""
     across, along = (np.indices((side, side)) + 0.5) / side

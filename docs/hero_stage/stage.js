@@ -236,6 +236,18 @@ class Stage {
     around.clear();
   }
 
+  /** Begins a new picture, with the lamps turned about the bodies by an angle in degrees. */
+  turn(angle) {
+    this.count = 0;
+    this.renderer.setClearColor(0, 0);
+    this.renderer.setRenderTarget(this.sums[0]);
+    this.renderer.clear();
+    for (const [number, lamp] of this.lamps.entries()) {
+      const away = vector(this.hero.lamps[number].position).sub(this.ball.center);
+      lamp.userData.place = away.applyAxisAngle(new THREE.Vector3(0, 1, 0), THREE.MathUtils.degToRad(angle)).add(this.ball.center);
+    }
+  }
+
   /** Adds a frame to the picture. */
   frame() {
     const { scene, renderer, camera, hero } = this, [width, height] = this.size, index = this.count;
