@@ -250,7 +250,7 @@ class Stage {
 
   /** Adds a frame to the picture. */
   frame() {
-    const { scene, renderer, camera, hero } = this, [width, height] = this.size, index = this.count;
+    const { renderer, camera, hero } = this, [width, height] = this.size, index = this.count;
     const [a, b, c, d, e, f, g] = spread(index, 7);
     const [x, y] = onDisc(a, b).map((part) => part * hero.camera.aperture);
     const scale = height / 2 / Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) / this.focus;

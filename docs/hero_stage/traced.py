@@ -183,6 +183,7 @@ def _prop(mi: Any, prepared: Prepared, prop: Prop, to_world: np.ndarray) -> Any:
         picture = np.ascontiguousarray(prepared.model.pictures[prop.picture] * prop.color, np.float32)
         color = {"type": "bitmap", "bitmap": mi.Bitmap(picture), "raw": True, "wrap_mode": "repeat"}
     elif len(mesh.colors):
+        mesh = dataclasses.replace(mesh, colors=mesh.colors * [*prop.color, 1.0])
         color = {"type": "mesh_attribute", "name": "vertex_tint"}
     surface = {"type": "principled", "base_color": color, "roughness": prop.roughness, "metallic": prop.metalness}
     return _mesh(mi, mesh, to_world, {"type": "twosided", "surface": surface})
