@@ -2,6 +2,7 @@
 # make demo   emit every example for every target into out/demo and compile all of it
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts, tsc, eslint
 # make gallery  the example scenes' pictures, and docs/gallery.md
+# make heroes  large pictures with surroundings beside path traced ones, hours on two cores: docs/heroes.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores 110 minutes: docs/accuracy.md and docs/accuracy/*.md
@@ -38,7 +39,7 @@ export PYTHONUTF8 := 1
 # Without stored bytecode, each of the hundreds of processes that the tests start would compile all of sssgen.
 unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery stability engines site vscode dist clean
+.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery heroes stability engines site vscode dist clean
 
 setup: .venv/done build/node/done build/preview/library.js
 
@@ -110,6 +111,10 @@ bench-gpu: setup
 gallery: setup
 	$(BIN)/python docs/gallery.py
 	$(BIN)/python docs/before_after.py
+
+heroes: setup
+	$(PIP) install --editable '.[heroes]'
+	$(BIN)/python docs/heroes.py
 
 stability: setup
 	$(BIN)/python -m qualification.pages.stability

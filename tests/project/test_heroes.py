@@ -1,0 +1,75 @@
+"""The hero pictures of docs/heroes.py: their models, materials and film, without drawing."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import compile
+
+ROOT = Path(__file__).parents[2]
+MATERIALS = sorted(file for file in (ROOT / "docs" / "heroes").glob("*/*.toml") if file.name != "hero.toml")
+
+
+@pytest.fixture
+def stage(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The modules of the heroes."""
+    pytest.importorskip("scipy")
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    import hero_stage.hero
+    import hero_stage.shapes
+
+    yield hero_stage
+    for name in [name for name in sys.modules if name.startswith("hero_stage")]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("path", MATERIALS, ids=lambda path: path.stem)
+def test_materials_of_heroes_are_emitted(path: Path) -> None:
+    files = compile(load_material(str(path)), "threejs").files
+    assert "createMaterial" in files[f"{path.stem}.js"]
+
+
+def test_heroes_name_what_they_have(stage: Any) -> None:
+    assert len(stage.hero.heroes()) >= 4
+    for name in stage.hero.heroes():
+        hero = stage.hero.load(name)
+        assert hero.lamps and hero.bodies, name
+        for body in hero.bodies:
+            assert (hero.folder / body.material).is_file(), name
+            assert "passed" in body.medium or len(body.medium["absorption"]) == 3, name
+
+
+def test_a_meshed_ball_is_a_ball(stage: Any) -> None:
+    pytest.importorskip("skimage")
+    mesh = stage.shapes.meshed(lambda p: stage.shapes.sphere(p, (0.1, 0, 0), 0.7), (-1, -1, -1), (1, 1, 1), 24)
+    away = mesh.vertices - [0.1, 0.0, 0.0]
+    assert np.abs(np.linalg.norm(away, axis=1) - 0.7).max() < 1e-3
+    assert np.abs(mesh.normals - away / 0.7).max() < 1e-2
+    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
+    assert np.einsum("nc,nc->", a, np.cross(b, c)) / 6.0 == pytest.approx(4.0 / 3.0 * np.pi * 0.7**3, rel=0.01)
+
+
+def test_joined_bodies_flow_together_where_they_meet(stage: Any) -> None:
+    p = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
+    first, second = stage.shapes.sphere(p, (-0.5, 0, 0), 0.5), stage.shapes.sphere(p, (0.5, 0, 0), 0.5)
+    both = stage.shapes.joined(first, second, blend=0.2)
+    assert both[0] == pytest.approx(-0.2 / 6.0)
+    assert both[1] == min(first[1], second[1])
+
+
+def test_a_floor_darkens_what_faces_it(stage: Any) -> None:
+    pytest.importorskip("skimage")
+    pytest.importorskip("embreex")
+    ball = stage.shapes.meshed(
+        lambda p: stage.shapes.sphere(p, (0, 0.5, 0), 0.5), (-0.6, -0.1, -0.6), (0.6, 1.1, 0.6), 12
+    )
+    seen = ball.with_colors(floor=0.0).colors[:, 3]
+    up = ball.normals[:, 1]
+    assert seen[up > 0.9].min() > 0.9
+    assert seen[up < -0.9].max() < 0.4
