@@ -69,13 +69,16 @@ def test_a_larger_body_is_denser() -> None:
     assert np.array(extinction(40.0)) == pytest.approx(2.0 * np.array(extinction(20.0)), rel=1e-4)
 
 
-def test_light_through_a_thick_body_has_the_hue_of_its_absorption() -> None:
-    """Wax absorbs blue: what comes through is warmer than what it reflects."""
-    material = parse_material(preset_text(preset("wax"), "good", "wax", SIZE), "wax.toml")
+def test_light_below_a_refracting_surface_is_more_saturated() -> None:
+    """Jade absorbs red and blue, and what its surface reflects back is absorbed again."""
+    jade = preset("jade")
+    medium = jade.interior(SIZE.unit_mm)
+    material = parse_material(preset_text(jade, "good", "jade", SIZE), "jade.toml")
     (albedo,) = [stage.values["scattering_albedo"] for stage in material.stages if "octaves" in stage.values]
-    assert albedo[0] > albedo[1] > albedo[2]
+    assert albedo[0] / albedo[1] < medium.albedo[0] / medium.albedo[1]
     (tint,) = [stage.values["tint"] for stage in material.stages if "tint" in stage.values]
-    assert albedo[2] / albedo[0] < tint[2] / tint[0]
+    colors = multiscatter_of_albedo(medium.albedo)
+    assert tint[0] / tint[1] < colors[0] / colors[1]
 
 
 def test_qualities_need_what_they_say() -> None:

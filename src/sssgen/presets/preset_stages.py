@@ -16,6 +16,7 @@ from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.technique_choice import Choice, choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.scatter_color import multiscatter_of_albedo
+from sssgen.presets.boundary_light import behind_boundary, leaving_shares
 from sssgen.presets.kept_material import with_pictures
 from sssgen.presets.preset import Color, Preset
 from sssgen.scene.measured.media import Medium
@@ -23,14 +24,13 @@ from sssgen.support.diagnostics import failure
 
 RESPONSE = "light.bin"
 """The file of the baked light, beside the material."""
-_MATTE = 0.85
-"""The share of a thick body's colour that `fast` reflects; the rest is in the light behind."""
+_MATTE, _WRAP, _GLOW, _EVEN = 0.5, 0.5, 1.0, 0.3
+"""Of `fast`: the share of a thick body's colour that is reflected, the wrap of a body of one mean free path, and the
+strength of the lobe and of the even light over what a slab transmits. Fitted like the constants of `boundary_light`."""
 _DETAIL = 0.5
 """The share of the light of a scattering body that has the detail of the mesh's own colours."""
 _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
-_THICK = 4.0
-"""The mean chord in mean free paths from which light is scattered many times."""
 _MEAN_CHORD = 0.6
 """Of a body that is two units large, as figures have it: the mean length of lines inside."""
 _DENSEST = 10000.0
@@ -99,7 +99,7 @@ def _choice(preset: Preset, quality: str, size: BodySize, kept: SurfaceModel | N
         return choose(preset.model(size.unit_mm * size.mean_chord), 1.0)
     if quality == "good" or not preset.scatters:
         choice = choose(preset.model(size.unit_mm), size.mean_chord)
-        stages = [_colored(preset, size, stage) for stage in choice.stages]
+        stages = [_behind_boundary(preset, size, stage) for stage in choice.stages]
         choice = choice._replace(stages=_seen_through(preset, size, stages))
         has_detail = keeps_color and kept is not None and kept.base_color.image is not None
         if not (has_detail and preset.scatters):
@@ -127,10 +127,16 @@ def _shares_left(octaves: Any) -> list[float]:
 
 
 def _reflected(preset: Preset, size: BodySize, share: float) -> Color:
-    """A share of what a thick body reflects of diffuse light."""
-    medium = isotropic_medium(preset.interior(size.unit_mm))
-    red, green, blue = (share * part for part in multiscatter_of_albedo(medium.albedo))
+    """A share of what a thick body reflects of diffuse light through its refracting surface."""
+    colors = _thick_color(preset, size)
+    leaving = leaving_shares(colors, preset.ior)
+    red, green, blue = (share * part * color for part, color in zip(leaving, colors, strict=True))
     return red, green, blue
+
+
+def _thick_color(preset: Preset, size: BodySize) -> tuple[float, ...]:
+    """What a thick body of the medium reflects of diffuse light where its surface does not refract."""
+    return multiscatter_of_albedo(isotropic_medium(preset.interior(size.unit_mm)).albedo)
 
 
 def _check_unit(preset: Preset, size: BodySize) -> None:
@@ -142,17 +148,9 @@ def _check_unit(preset: Preset, size: BodySize) -> None:
     raise failure(f"a unit of the mesh is {size.unit_mm:.3g} mm: the numbers of the material leave their ranges", hint)
 
 
-def _colored(preset: Preset, size: BodySize, stage: MaterialSection) -> MaterialSection:
-    """The stage with the hue of light that comes through a thick body, which its octaves lack: they have shares that
-    are equal for all channels. Their light has the square of the albedo."""
-    medium = isotropic_medium(preset.interior(size.unit_mm))
-    if stage.technique != "interior_octaves" or medium.mean_free_path * _THICK > size.mean_chord:
-        return stage
-    through = _transmitted(medium, 0.5 * size.mean_chord)
-    albedo = [min(a, math.sqrt(t / max(through))) for a, t in zip(medium.albedo, through, strict=True)]
-    return stage._replace(
-        values=tuple((key, albedo if key == "scattering_albedo" else old) for key, old in stage.values)
-    )
+def _behind_boundary(preset: Preset, size: BodySize, stage: MaterialSection) -> MaterialSection:
+    """The stage below the preset's refracting surface; that of a clear body as it is."""
+    return behind_boundary(stage, _thick_color(preset, size), preset.ior) if preset.scatters else stage
 
 
 def _transmitted(medium: Medium, depth: float) -> list[float]:
@@ -187,12 +185,13 @@ def _fast(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]
     medium = isotropic_medium(preset.interior(size.unit_mm))
     matte = _reflected(preset, size, _MATTE)
     depth = 0.5 * size.mean_chord
-    transmitted = _transmitted(medium, depth)
-    strongest = max(transmitted)
-    wrap = 0.5 * min(medium.mean_free_path / max(depth, 1e-6), 1.0)
+    leaving = leaving_shares(_thick_color(preset, size), preset.ior)
+    through = [share * part for share, part in zip(leaving, _transmitted(medium, depth), strict=True)]
+    strongest = max(through)
+    wrap = _WRAP * min(medium.mean_free_path / max(depth, 1e-6), 1.0)
     lobe = (
-        ("subsurface_color", [part / strongest for part in transmitted]),
-        ("scale", min(3.0 * strongest, 20.0)), ("power", 4.0), ("distortion", 0.3), ("ambient", min(strongest, 0.3)),
+        ("subsurface_color", [part / strongest for part in through]), ("scale", min(_GLOW * strongest, 20.0)),
+        ("power", 2.0), ("distortion", 0.3), ("ambient", min(_EVEN * strongest, 1.0)),
     )  # fmt: skip
     stages = [
         MaterialSection("thickness", "constant_thickness", (("thickness_factor", 1.0),)),
