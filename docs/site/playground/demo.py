@@ -15,7 +15,7 @@ from PIL import Image
 from packed_file import write_packed
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import all_targets, compile
-from sssgen.presets.engine_project import ENGINES
+from sssgen.presets.engines import ENGINES
 from sssgen.presets.preset import presets
 from sssgen.support.diagnostics import SssgenError
 from starts import PRESET, Start, write_start

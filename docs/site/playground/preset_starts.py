@@ -5,9 +5,10 @@ from __future__ import annotations
 import functools
 from pathlib import Path
 
-from sssgen.presets.engine_project import Request, material_files
+from sssgen.presets.engine_project import material_files
 from sssgen.presets.preset import Preset, presets
 from sssgen.presets.preset_stages import BodySize
+from sssgen.presets.request import Request
 from sssgen.presets.used_mesh import UsedMesh, used_mesh
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import measured_scene
@@ -20,7 +21,8 @@ def preset_files() -> dict[str, Path]:
     found = {}
     for preset in presets().values():
         place = Path(folder("build"), "presets_on_mouse", preset.name)
-        request = Request(preset, _mesh(preset), "threejs", "good", f"sssgen use {preset.name} mouse.obj -o out")
+        command = f"sssgen use {preset.name} mouse.obj -o out"
+        request = Request(preset, _mesh(preset), "threejs", "good", preset.keeps_color, command)
         write_files(str(place), material_files(request))
         found[preset.name] = place / f"{preset.name}.toml"
     return found

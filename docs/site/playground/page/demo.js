@@ -75,7 +75,7 @@ async function draw(head) {
     stage ??= begun();
     const [drawn, scene, asked] = [await stage, start.scenes[''], preset];
     pieces.body(scene.head.body);
-    drawn.scene.environmentIntensity = asked.surroundings / 2;  // a scene's unit is half of three's
+    drawn.surround(asked.surroundings);
     await drawn.show({ ...scene.head, ...head, textures: head.textures }, new Map());
     box('demo').dataset.drawn = asked.name;
   } catch (reason) {

@@ -1,12 +1,13 @@
-// The demo's picture: the stage of the live preview in the surroundings that a project of `sssgen use` has.
+// The demo's picture: the stage of the live preview in the studio and on the ground, with its lamp behind the body.
 
 import * as THREE from 'three';
-import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
-import { ballOf } from './preview/coarse_body.js';
-import { Stage } from './preview/stage.js';
+import { PLAIN, Stage } from './preview/stage.js';
 
-const LAMP = [-1.75, 0.95, -2.3];  // in radii of the body: in the picture, where it can be dragged
-const BACKGROUND = 0x121316;
+/** @typedef {import('../../../../src/sssgen/preview/page_messages.js').BodyPicture} BodyPicture */
+
+const LAMP = new THREE.Vector3(-1.75, 0.95, -2.3);  // in radii of the body: in the picture, where it can be dragged
+const GROUND = 0x2a2826;
+const STUDIO = 5 / 3;  // a scene's unit of surroundings is half of three's room, a stage's 0.3 of it
 const SWAY = 0.22;  // radians, to each side
 const PERIOD = 14;  // seconds
 
@@ -15,58 +16,28 @@ export class DemoStage extends Stage {
   constructor(root, pieceOf) {
     super(root, 'webgl', pieceOf);
     this.touched = matchMedia('(prefers-reduced-motion: reduce)').matches;  // then the view rests
-    this.angle = 0;
+    this.swayed = 0;
   }
 
   async start() {
     await super.start();
-    const renderer = /** @type {THREE.WebGLRenderer} */ (this.renderer);
-    this.scene.background = new THREE.Color(BACKGROUND);
-    this.scene.environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment(), 0.04).texture;
-    for (const kind of ['pointerdown', 'wheel']) renderer.domElement.addEventListener(kind, () => { this.touched = true; });
+    this.ground.show(true);
+    this.ground.mesh?.material.color.set(GROUND);
+    for (const kind of ['pointerdown', 'wheel']) this.root.addEventListener(kind, () => { this.touched = true; });
     Object.assign(this.orbit, { enableZoom: false, enablePan: false, maxPolarAngle: 0.52 * Math.PI });
     requestAnimationFrame((time) => this.sway(time));
   }
 
-  /** @param {import('../../../../src/sssgen/preview/page_messages.js').BodyPicture} picture @param {ArrayBuffer} body
-   * @param {import('./preview/material.js').EmittedMaterial} material */
-  place(picture, body, material) {
-    super.place(picture, body, material);
-    if (this.ground) return;
-    const { radius, center } = ballOf(this.mesh);
-    const low = new THREE.Box3().setFromObject(this.mesh).min.y;
-    this.ground = new THREE.Mesh(
-      new THREE.CircleGeometry(12 * radius, 96).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({ color: 0x2a2826, roughness: 0.9 }),
-    );
-    this.ground.position.set(center.x, low, center.z);
-    this.ground.receiveShadow = true;
-    this.scene.fog = new THREE.Fog(BACKGROUND, 6 * radius, 12 * radius);
-    this.scene.add(this.ground);
-  }
+  /** The surroundings of the next pictures.
+   * @param {number} strength  as scenes have it */
+  surround(strength) { this.settings = { light: { ...PLAIN.light, kind: 'studio', strength: STUDIO * strength }, ground: true, lampsShown: false }; }
 
-  /** The scene's lamps; the one behind the body is a spot light, as a point light would draw its shadow six times.
-   * @param {import('../../../../src/sssgen/preview/page_messages.js').BodyPicture} picture */
-  light(picture) {
-    const before = this.lit;
-    super.light(picture);
-    if (this.lit === before) return;
-    const { radius, center } = ballOf(this.mesh);
-    for (const [index, lamp] of this.lamps.entries()) {
-      if (!(lamp instanceof THREE.PointLight)) { this.scene.remove(this.handles[index]); continue; }
-      const place = new THREE.Vector3(...LAMP).multiplyScalar(radius);
-      const nearer = place.lengthSq() / lamp.position.distanceToSquared(center);
-      const spot = new THREE.SpotLight(lamp.color, lamp.intensity * nearer, 0, 0.55, 0.6);
-      spot.position.copy(place).add(center);
-      spot.target.position.copy(center);
-      spot.target.updateMatrixWorld();
-      spot.castShadow = true;
-      spot.shadow.mapSize.set(1024, 1024);
-      Object.assign(spot.shadow, { radius: 3, normalBias: 0.01 * radius });
-      Object.assign(spot.shadow.camera, { near: radius, far: 9 * radius });
-      this.scene.remove(lamp);
-      this.scene.add(spot);
-      this.handles[index].userData.lamp = this.lamps[index] = spot;
-    }
+  /** The scene's view, with its lamp at the demo's place.
+   * @param {BodyPicture} picture */
+  look(picture) {
+    super.look(picture);
+    this.swayed = 0;
+    this.lamps.lights = picture.lights.map((light) => (light.position[3] ? behind(light, this.ball) : light));
   }
 
   /** Turns the view a little to and fro until somebody touches it, on machines that draw it at once.
@@ -76,8 +47,16 @@ export class DemoStage extends Stage {
     requestAnimationFrame((next) => this.sway(next));
     if (!this.mesh || this.drafts.level > 0 || document.hidden) return;
     const angle = SWAY * Math.sin(time / 1000 * 2 * Math.PI / PERIOD);
-    this.camera.position.sub(this.orbit.target).applyAxisAngle(THREE.Object3D.DEFAULT_UP, angle - this.angle).add(this.orbit.target);
-    this.angle = angle;
+    this.camera.position.sub(this.orbit.target).applyAxisAngle(THREE.Object3D.DEFAULT_UP, angle - this.swayed).add(this.orbit.target);
+    this.swayed = angle;
     this.orbit.update();
   }
+}
+
+/** A point lamp at the demo's place, as bright at the body as at its own.
+ * @param {import('../../../../src/sssgen/preview/page_messages.js').Light} light @param {THREE.Sphere} ball */
+function behind({ position: [x, y, z], color }, { center, radius }) {
+  const place = LAMP.clone().multiplyScalar(radius);
+  const farther = place.lengthSq() / new THREE.Vector3(x, y, z).distanceToSquared(center);
+  return { position: [...place.add(center).toArray(), 1], color: color.map((part) => part * farther) };
 }
