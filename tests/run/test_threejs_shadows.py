@@ -209,7 +209,7 @@ def test_a_version_of_three_without_a_line_is_an_error(scenes: Scenes) -> None:
 
 
 def test_clear_bodies_show_what_is_behind_them(scenes: Scenes) -> None:
-    """A wall whose corner is behind the middle of a ball; another clear ball, which is behind the first, is not shown."""
+    """A wall whose corner is behind the middle of a ball. The clear ball behind the first is not shown."""
     wall = {"position": [-2.475, 1.5, -2.0], "scale": [3.0, 3.0, 1.0], "color": 0x40FF80}
     behind = {"shape": "pea", "position": [-0.81, 0.0, -1.0]}
     shown = scenes.draw([], wall, bodies=(BALL, behind), material="clear")
