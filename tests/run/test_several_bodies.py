@@ -11,6 +11,7 @@ import pytest
 
 from gltf_files import box, write_gltf
 from sssgen.cli.main import main
+from sssgen.preview.pane import Pane
 from sssgen.run import backends
 from sssgen.run.render.scene_render import render
 from sssgen.scene.pictures import images
@@ -156,3 +157,18 @@ def test_resized_pictures_keep_straight_lines() -> None:
     assert large.shape == (16, 32, 1)
     np.testing.assert_allclose(np.diff(large[0, 4:28, 0]), 1.0 / 28.0, atol=1e-9)
     np.testing.assert_allclose(resized(large, 8, 4)[:, 1:-1], ramp[:, 1:-1], atol=1e-9)
+
+
+def test_a_scene_of_bodies_is_shown_and_not_previewed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text('bodies = ["glass.toml", "wood.toml"]\n', encoding="utf-8")
+    for name in ("glass.toml", "wood.toml"):
+        Path(name).write_text('material = "jelly"\n[geometry]\nkind = "ball"\n', encoding="utf-8")
+    assert main(["show", "scene.toml"]) == 0
+    text = capsys.readouterr().out
+    assert "bodies: 2, each with its own material\n  glass.toml\n  wood.toml\n" in text
+    assert "none: the scene" not in text and "marches" not in text
+    with pytest.raises(SssgenError, match=r"(?s)has 2 bodies.*open one of its scenes: glass\.toml, wood\.toml"):
+        Pane("scene.toml")

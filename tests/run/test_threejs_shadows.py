@@ -44,6 +44,24 @@ technique = "interior_octaves"
 bind = { light_path = "light_layers_path" }
 extinction = [2.0, 3.0, 4.0]
 """
+# it bends no ray and takes no light
+CLEAR_MATERIAL = """[material]
+name = "clear"
+[thickness]
+technique = "constant_thickness"
+[[surface]]
+technique = "base_color"
+tint = [0.0, 0.0, 0.0, 1.0]
+[[surface]]
+technique = "pbr_constants"
+surface_roughness = 0.0
+[translucency]
+technique = "seen_through"
+extinction = [0.0, 0.0, 0.0]
+ior = 1.0
+sky_below = [0.0, 0.0, 0.0]
+sky_above = [0.0, 0.0, 0.0]
+"""
 
 
 class Scenes:
@@ -53,7 +71,7 @@ class Scenes:
         self.page = page
         (folder / "through.sss").write_text(THROUGH, encoding="utf-8")
         self.modules = {}
-        for name, text in {"made": THROUGH_MATERIAL, "drawn": DRAWN_MATERIAL}.items():
+        for name, text in {"made": THROUGH_MATERIAL, "drawn": DRAWN_MATERIAL, "clear": CLEAR_MATERIAL}.items():
             (folder / f"{name}.toml").write_text(text, encoding="utf-8")
             self.modules[name] = page_values.modules_of(sssgen.compile(str(folder / f"{name}.toml"), "threejs"))
         self.picture = cache(self._picture)
@@ -188,3 +206,14 @@ def test_a_version_of_three_without_a_line_is_an_error(scenes: Scenes) -> None:
     with pytest.raises(SssgenError, match=r"made: this version of three\.js has no .*vSpotLightCoord"):
         scenes.draw("directional", missing="vSpotLightCoord")
     scenes.page.restart()
+
+
+def test_clear_bodies_show_what_is_behind_them(scenes: Scenes) -> None:
+    """A wall whose corner is behind the middle of a ball. The clear ball behind the first is not shown."""
+    wall = {"position": [-2.475, 1.5, -2.0], "scale": [3.0, 3.0, 1.0], "color": 0x40FF80}
+    behind = {"shape": "pea", "position": [-0.81, 0.0, -1.0]}
+    shown = scenes.draw([], wall, bodies=(BALL, behind), material="clear")
+    scene = scenes.draw([], wall, bodies=({"shape": "pea", "position": [0.0, 0.0, 9.0]},), material="clear")
+    middle = np.ix_((13, 18), (22, 27))
+    assert np.abs(shown[middle] - scene[middle]).max() < 0.02
+    assert (scene[middle].max(axis=-1) > 0.9).sum() == 1

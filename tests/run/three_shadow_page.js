@@ -103,7 +103,7 @@ async function draw(plan) {
     mesh.receiveShadow = !plan.unreceived;
   }
   for (const wall of plan.walls) {
-    const mesh = new THREE.Mesh(slab, black);
+    const mesh = new THREE.Mesh(slab, wall.color === undefined ? black : new THREE.MeshBasicMaterial({ color: wall.color }));
     mesh.applyMatrix4(placed(wall));
     mesh.castShadow = true;
     scene.add(mesh);

@@ -36,7 +36,7 @@ from sssgen.scene.scene import Light, Scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.installed_files import is_installed, refusal
-from sssgen.support.paths import posix
+from sssgen.support.paths import posix, shell_word
 from sssgen.support.unsaved import kept
 
 Values = Mapping[str, Sequence[float]]
@@ -277,6 +277,10 @@ def _picture(name: str, choices: Choices) -> tuple[Scene | None, Picture]:
         picture = picture_of(scene, material, choices)
         return scene, picture._replace(head={**picture.head, "saves": SAVES})
     scene = scene_of(name)
+    if scene.bodies:
+        listed = ", ".join(shell_word(path) for path in scene.bodies)
+        hint = f"open one of its scenes: {listed}; sssgen render draws all of them"
+        raise failure(f"the scene has {len(scene.bodies)} bodies, and the preview shows one", hint, posix(name))
     material = load_material(scene.material)
     picture = (raymarched_picture if material.makes_rays else picture_of)(scene, material, choices)
     return scene, picture._replace(head={**picture.head, **saves_where(scene, material)})

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import NamedTuple, TypeVar
 
-from sssgen.ir.frame_passes import FRAME_PASSES, VOLUMES, shows_light
+from sssgen.ir.frame_passes import BEHIND, FRAME_PASSES, VOLUMES, shows_light
 from sssgen.passes.capabilities import Capabilities
 from sssgen.targets.frame import Variant
 
@@ -275,6 +275,8 @@ class Target(NamedTuple):
     """What draws the passes of a material in the form `shader`; '' where the user's program does."""
     draws_light: bool = False
     """Whether it draws the light on the body, too."""
+    draws_scene: bool = False
+    """Whether it draws the scene without the body, too."""
     draws_inside: str = ""
     """What computes the light inside a body there; '' where the user's program does."""
     clustered_lights: bool = False
@@ -321,7 +323,7 @@ class Target(NamedTuple):
         if name in VOLUMES:
             return self.draws_inside
         if FRAME_PASSES[name].of == "surroundings":
-            return ""
+            return self.draws_passes if self.draws_scene and name == BEHIND else ""
         return self.draws_passes if self.draws_light or not shows_light(name) else ""
 
     @property

@@ -57,7 +57,7 @@ def texture_variables(printer: Printer, uniform: Uniform, type_: Sampler, source
 
 
 def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The passes that draw bodies, with the engine's properties and the names in its text.
+    """The passes that the engine's runtime runs, with the engine's properties and the names in its text.
 
     `sources` are the techniques' own names.
     """
@@ -71,10 +71,11 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
             "texture": of(use.texture), "views": [of(view) for view in use.views],
             "texture_uniform": use.texture.name, "view_uniforms": [view.name for view in use.views],
             "lights_uniform": use.lights.name if use.lights else None,
+            "size": of(use.size) if use.size else None,
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]
-        if drawn.of != "surroundings" and (use.name not in VOLUMES or target.drawer(use.name))
+        if (drawn.of != "surroundings" and use.name not in VOLUMES) or target.drawer(use.name)
     ]  # fmt: skip
 
 

@@ -45,6 +45,7 @@ def describe(name: str) -> dict[str, Any]:
         "samples": scene.samples,
         "time": scene.time,
         "geometry": scene.document.data.get("geometry"),
+        "bodies": [posix(path) for path in scene.bodies],
         "camera": {
             "position": list(scene.camera.position),
             "target": list(scene.camera.target),
@@ -74,9 +75,16 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     camera = facts["camera"]
     text = [f"{facts['name']} (scene)" + (f": {facts['title']}" if facts["title"] else "")]
     text += [*wrap(facts["summary"], width, "  ", "  "), ""]
-    text.append(f"material: {facts['material_file'] or 'none: the scene describes what is measured'}")
-    geometry = facts["geometry"]
-    text += wrap(f"geometry: {_table(geometry) if geometry else 'none: the material marches rays'}", width, "", "  ")
+    if facts["bodies"]:
+        text += [
+            f"bodies: {len(facts['bodies'])}, each with its own material",
+            *(f"  {path}" for path in facts["bodies"]),
+        ]
+    else:
+        text.append(f"material: {facts['material_file'] or 'none: the scene describes what is measured'}")
+        geometry = facts["geometry"]
+        shape = _table(geometry) if geometry else "none: the material marches rays"
+        text += wrap(f"geometry: {shape}", width, "", "  ")
     for key in MEASURED:
         if facts[key] is not None:
             text += wrap(f"{key}: {_table(facts[key])}", width, "", "  ")

@@ -6,10 +6,11 @@
  * @property {string} name
  * @property {string} seenFrom `eye`, `light`, `distant light`, `each light`, or `inside` for a volume of the light in the body
  * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face, or `light`: what a white
- *   matt surface there reflects
+ *   matt surface there reflects; [] for the scene without the body
  * @property {'0' | 'far'} empty what a texel without a surface has
  * @property {string} texture the property of the picture
  * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
+ * @property {string | null} [size] the property of the last level of a picture with levels
  */
 
 /** The distance beside a body in a picture of light: more than any of a body's. It fits into half a float. */

@@ -1,5 +1,5 @@
-// What three draws before a material: pictures of the body alone, as the eye or a light sees it. A picture that the page
-// sets itself is not drawn.
+// What three draws before a material: pictures of the body alone, as the eye or a light sees it, and of the scene without it. A
+// picture that the page sets itself is not drawn.
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
@@ -9,6 +9,13 @@ import { InnerLight } from './three_inner_light.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
+/** The largest width of a picture of the scene, in texels. */
+const MOST = 1024;
+/** Objects that show the scene behind them: no such picture has any of them, as each would need that of the other. */
+const CLEAR = new Set();
+
+/** Whether a pass shows the scene without the body. */
+const showsScene = ({ layers }) => layers.length === 0;
 
 // The materials of a pass: they write the distance from the eye or from the light's plane.
 
@@ -107,6 +114,12 @@ function pictureOf(width, height, type, filtered, blended) {
   return new THREE.WebGLRenderTarget(width, height, settings); // WebGPURenderer takes it, too
 }
 
+/** A picture of the scene, with levels. */
+function scenePictureOf(width) {
+  const settings = { type: THREE.HalfFloatType, samples: 4, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter };
+  return new THREE.WebGLRenderTarget(width, width, settings);
+}
+
 // The lights of a body.
 
 const placeOf = (object) => new THREE.Vector3().setFromMatrixPosition(object.matrixWorld);
@@ -179,6 +192,8 @@ class Drawing {
     /** That of the page, without what it sees. @type {any} */
     this.eye = new THREE.PerspectiveCamera();
     this.eye.matrixWorldAutoUpdate = false;
+    /** The colour and the opacity of the page's empty picture. @type {any} */
+    this.clear = [new THREE.Color(), 0];
     this.blank = emptyPicture();
     this.innerLight = new InnerLight();
     this.scene = Object.assign(new THREE.Scene(), { matrixWorldAutoUpdate: false });
@@ -196,6 +211,7 @@ class Drawing {
       values: Object.fromEntries(['autoClear', 'toneMapping', 'opaque', 'transparent'].filter((name) => name in renderer).map((name) => [name, renderer[name]])),
       shadows: renderer.shadowMap.autoUpdate, presents: renderer.xr?.enabled,
     };
+    this.clear = [state.color, state.alpha];
     renderer.setMRT?.(null);
     renderer.setRenderObjectFunction?.(null);
     renderer.shadowMap.autoUpdate = false;
@@ -251,8 +267,7 @@ class Drawing {
   /** Draws what a white matt object reflects in the light and the shadows of its scene. */
   drawLight(renderer, pass, picture, object, scene, camera, plane) {
     this.matt.plane.value = plane;
-    for (const name of ['matrixWorld', 'matrixWorldInverse', 'projectionMatrix', 'projectionMatrixInverse']) this.eye[name].copy(camera[name]);
-    this.eye.coordinateSystem = camera.coordinateSystem;
+    this.see(camera);
     const seen = [object];
     scene.traverseVisible((light) => {
       if (light.isLight && light.layers.test(camera.layers)) seen.push(light);
@@ -263,7 +278,6 @@ class Drawing {
     Object.assign(this.matt.material, { envMap, envMapIntensity, envMapRotation, side: material.side, flatShading: material.flatShading });
     if (this.nodes) {
       // WebGPURenderer draws the shadows of what this camera sees: it sees all, and draws the object
-      this.eye.layers.mask = camera.layers.mask;
       renderer.setRenderObjectFunction((each, ...others) => {
         if (each === object) renderer.renderObject(each, ...others);
       });
@@ -288,6 +302,34 @@ class Drawing {
     }
   }
 
+  /** Draws the scene without its clear objects. */
+  drawScene(renderer, picture, scene, camera) {
+    this.see(camera);
+    const hidden = this.nodes ? [] : [...CLEAR], masks = hidden.map(({ layers }) => layers.mask);
+    // the shadows of hidden objects stay: WebGPURenderer draws them again, for this camera
+    renderer.setRenderObjectFunction?.((each, ...others) => {
+      if (!CLEAR.has(each)) renderer.renderObject(each, ...others);
+    });
+    hidden.forEach(({ layers }) => (layers.mask = 0));
+    try {
+      picture.viewport.set(0, 0, picture.width, picture.height);
+      renderer.setRenderTarget(picture);
+      renderer.setClearColor(...this.clear);
+      renderer.clear();
+      renderer.render(scene, this.eye);
+    } finally {
+      renderer.setRenderObjectFunction?.(null);
+      hidden.forEach(({ layers }, index) => (layers.mask = masks[index]));
+    }
+  }
+
+  /** Gives the own camera the view of another. */
+  see(camera) {
+    for (const name of ['matrixWorld', 'matrixWorldInverse', 'projectionMatrix', 'projectionMatrixInverse']) this.eye[name].copy(camera[name]);
+    this.eye.coordinateSystem = camera.coordinateSystem;
+    this.eye.layers.mask = camera.layers.mask;
+  }
+
   /** Draws an object with another material, without its children. */
   alone(renderer, object, material, camera) {
     const masks = [object.layers.mask, camera.layers.mask];
@@ -304,13 +346,13 @@ class Drawing {
   picturesOf(object, pass, size) {
     if (!this.#pictures.has(object)) this.#pictures.set(object, {});
     const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
-    const kinds = showsLight(pass) ? [pass.name] : pass.layers;
-    const newPicture = () => pictureOf(size.x, size.y, this.type, this.filters, this.filters && isFiltered(pass));
+    const scene = showsScene(pass), kinds = scene || showsLight(pass) ? [pass.name] : pass.layers;
+    const newPicture = () => (scene ? scenePictureOf(size.x) : pictureOf(size.x, size.y, this.type, this.filters, this.filters && isFiltered(pass)));
     const layers = own[pass.name]?.layers ?? kinds.map(newPicture);
     const packed = own[pass.name]?.packed ?? (layers.length > 1 ? newPicture() : layers[0]);
     for (const picture of [...layers, packed]) {
       if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
-      picture.scissorTest = picture !== packed || layers.length === 1;
+      picture.scissorTest = !scene && (picture !== packed || layers.length === 1);
     }
     return (own[pass.name] = { layers, packed });
   }
@@ -357,6 +399,7 @@ export class Passes {
     let drawing = this.#drawings.get(renderer);
     if (!drawing) this.#drawings.set(renderer, (drawing = new Drawing(renderer)));
     this.#objects.add(object);
+    if (passes.some(showsScene)) CLEAR.add(object);
     object.addEventListener('removed', this.#onRemoved); // which has it once
     drawing.apart(renderer, () => {
       for (const pass of passes) this.#drawPass(drawing, pass, { renderer, scene, camera, object }, set);
@@ -381,6 +424,11 @@ export class Passes {
       cameras = lightsAt(ball, scene, camera, pass).map((light) => lampOf(light, ball, distant, system));
     }
     const tiles = tilesOf(cameras.length), tile = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE);
+    if (showsScene(pass)) {
+      const levels = Math.floor(Math.log2(Math.min(Math.max(tile.x, tile.y), MOST)));
+      tile.setScalar(2 ** levels);
+      if (pass.size) set(pass.size, levels);
+    }
     const pictures = drawing.picturesOf(object, pass, new THREE.Vector2(tile.x * tiles.across, tile.y * tiles.up));
     pass.views.forEach((view, index) => {
       const { x, y } = tileOf(index);
@@ -390,7 +438,8 @@ export class Passes {
       const matrix = cameras[index] ? viewOf(cameras[index], corner, tiles, drawing.gpu ? -1 : 1, eye ? plane : undefined) : new THREE.Matrix4().multiplyScalar(0);
       set(view, matrix);
     });
-    if (showsLight(pass)) drawing.drawLight(renderer, pass, pictures.packed, object, scene, camera, plane);
+    if (showsScene(pass)) drawing.drawScene(renderer, pictures.packed, scene, camera);
+    else if (showsLight(pass)) drawing.drawLight(renderer, pass, pictures.packed, object, scene, camera, plane);
     else drawing.draw(renderer, pass, pictures, object, cameras, tile);
     set(pass.texture, pictures.packed.texture);
   }
@@ -398,6 +447,7 @@ export class Passes {
   #forget(object) {
     for (const drawing of this.#drawings.values()) drawing.forget(object);
     this.#objects.delete(object);
+    CLEAR.delete(object);
     object.removeEventListener('removed', this.#onRemoved);
   }
 
