@@ -436,7 +436,7 @@ class _Reader:
             )
             where = place(*path, "bind").key if table else place(*path, "technique").value
             error(where, f"slot '{slot.name}' of '{technique.name}' is not bound", hint)
-        for name in _cycle(bindings):
+        for name in slots.cycle({name: (bound.module, bound.function) for name, bound in bindings.items()}):
             error(
                 place(*path, "bind", name).value,
                 f"the function bound to '{name}' calls '{name}' again",
@@ -495,21 +495,3 @@ def _section_hint(key: str, sections: tuple[str, ...]) -> str:
     if key == "distance":
         return 'distance functions are bound to slots: bind = { … = "…" }'
     return did_you_mean(key, sections) or f"sections: {', '.join(sections)}"
-
-
-def _cycle(bindings: dict[str, Binding]) -> list[str]:
-    """The first slot whose function calls the slot again, directly or through others; [] if there is none."""
-    calls = {
-        name: [slot.name for slot in slots.needs(binding.module, binding.function)[1]]
-        for name, binding in bindings.items()
-    }
-    for start in bindings:
-        waiting, seen = list(calls[start]), set()
-        while waiting:
-            name = waiting.pop()
-            if name == start:
-                return [start]
-            if name not in seen:
-                seen.add(name)
-                waiting += calls.get(name, [])
-    return []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Mapping
 
 from sssgen.ir.nodes import Call, Function, Global, Module
 from sssgen.ir.types import spell
@@ -155,3 +156,18 @@ def body(shape: str, place: str) -> str:
             if [param.quantity for param in function.params] == [place]:
                 return technique.name if function.name == technique.name else f"{technique.name}:{function.name}"
     return ""
+
+
+def cycle(bound: Mapping[str, tuple[Module, Function]]) -> list[str]:
+    """The first slot whose function calls the slot again, directly or through others; [] if there is none."""
+    calls = {name: [slot.name for slot in needs(module, function)[1]] for name, (module, function) in bound.items()}
+    for start in bound:
+        waiting, seen = list(calls[start]), set()
+        while waiting:
+            name = waiting.pop()
+            if name == start:
+                return [start]
+            if name not in seen:
+                seen.add(name)
+                waiting += calls.get(name, [])
+    return []
