@@ -65,7 +65,7 @@ def test_the_commands_that_follow_are_printed(
     monkeypatch.chdir(tmp_path)
     assert run("import", "box.glb", "-o", "my glass") == 0
     printed = capsys.readouterr().out
-    assert "draw it: sssgen render 'my glass/glass/scene.toml' -o glass.png\n" in printed
+    assert "draw it: sssgen render 'my glass/scene.toml' -o box.png\n" in printed
     assert "change it: sssgen preview 'my glass/glass/scene.toml'\n" in printed
 
 

@@ -189,10 +189,11 @@ class _Reader:
             return None
         span = self.document.place(*path, "technique").value
         bindings = self.bind(technique, path, table)
-        names, _ = slots.needs(technique.module, technique.function)
+        functions = [function for function in (technique.function, technique.surroundings) if function]
+        names = {name for function in functions for name in slots.needs(technique.module, function)[0]}
         uniforms = {uniform.span: uniform for uniform in technique.uniforms if uniform.name in names}
         for binding in bindings.values():
-            names, _ = slots.needs(binding.module, binding.function)
+            names = set(slots.needs(binding.module, binding.function)[0])
             uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
         levels: tuple[int, ...] = ()
         if "level" in table:

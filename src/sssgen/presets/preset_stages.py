@@ -176,8 +176,11 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
         *texture, ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
         ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]),
     )  # fmt: skip
+    fixed: tuple[str, ...] = ()
+    if preset.scatters:  # too little of the scene is seen to draw it once more
+        values, fixed = (*values, ("shows_scene", False)), ("shows_scene",)
     comment = "The engine's surroundings are seen through; for a sky of two colours set sky_below and sky_above."
-    return [*lengths, *kept, MaterialSection("translucency", "seen_through_body", values, comment=comment)]
+    return [*lengths, *kept, MaterialSection("translucency", "seen_through_body", values, fixed=fixed, comment=comment)]
 
 
 def _fast(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]:

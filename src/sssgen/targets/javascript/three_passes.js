@@ -11,8 +11,8 @@ import { InnerLight } from './three_inner_light.js';
 const ALONE = 31;
 /** The largest width of a picture of the scene, in texels. */
 const MOST = 1024;
-/** Objects that show the scene behind them: no such picture has any of them, as each would need that of the other. */
-const CLEAR = new Set();
+/** Whether a picture of the scene is drawn now: its objects keep the pictures that they have, as each may need that of the other. */
+let drawsScene = false;
 
 /** Whether a pass shows the scene without the body. */
 const showsScene = ({ layers }) => layers.length === 0;
@@ -302,15 +302,21 @@ class Drawing {
     }
   }
 
-  /** Draws the scene without its clear objects. */
-  drawScene(renderer, picture, scene, camera) {
+  /** Draws the scene without the objects of a material. */
+  drawScene(renderer, picture, material, scene, camera) {
     this.see(camera);
-    const hidden = this.nodes ? [] : [...CLEAR], masks = hidden.map(({ layers }) => layers.mask);
-    // the shadows of hidden objects stay: WebGPURenderer draws them again, for this camera
-    renderer.setRenderObjectFunction?.((each, ...others) => {
-      if (!CLEAR.has(each)) renderer.renderObject(each, ...others);
+    /** @type {Set<any>} */
+    const hidden = new Set();
+    scene.traverseVisible((each) => {
+      if (each.material === material) hidden.add(each);
     });
-    hidden.forEach(({ layers }) => (layers.mask = 0));
+    const masks = [...hidden].map(({ layers }) => layers.mask);
+    // the shadows of hidden objects stay: WebGPURenderer draws them again, for this camera
+    if (this.nodes) renderer.setRenderObjectFunction((each, ...others) => {
+      if (!hidden.has(each)) renderer.renderObject(each, ...others);
+    });
+    else hidden.forEach(({ layers }) => (layers.mask = 0));
+    drawsScene = true;
     try {
       picture.viewport.set(0, 0, picture.width, picture.height);
       renderer.setRenderTarget(picture);
@@ -318,8 +324,9 @@ class Drawing {
       renderer.clear();
       renderer.render(scene, this.eye);
     } finally {
+      drawsScene = false;
       renderer.setRenderObjectFunction?.(null);
-      hidden.forEach(({ layers }, index) => (layers.mask = masks[index]));
+      [...hidden].forEach(({ layers }, index) => (layers.mask = masks[index]));
     }
   }
 
@@ -395,11 +402,10 @@ export class Passes {
    */
   draw({ renderer, scene, camera, object }, given, set) {
     const passes = this.passes.filter((pass) => !given(pass.texture));
-    if (!passes.length) return;
+    if (!passes.length || drawsScene) return;
     let drawing = this.#drawings.get(renderer);
     if (!drawing) this.#drawings.set(renderer, (drawing = new Drawing(renderer)));
     this.#objects.add(object);
-    if (passes.some(showsScene)) CLEAR.add(object);
     object.addEventListener('removed', this.#onRemoved); // which has it once
     drawing.apart(renderer, () => {
       for (const pass of passes) this.#drawPass(drawing, pass, { renderer, scene, camera, object }, set);
@@ -438,7 +444,7 @@ export class Passes {
       const matrix = cameras[index] ? viewOf(cameras[index], corner, tiles, drawing.gpu ? -1 : 1, eye ? plane : undefined) : new THREE.Matrix4().multiplyScalar(0);
       set(view, matrix);
     });
-    if (showsScene(pass)) drawing.drawScene(renderer, pictures.packed, scene, camera);
+    if (showsScene(pass)) drawing.drawScene(renderer, pictures.packed, object.material, scene, camera);
     else if (showsLight(pass)) drawing.drawLight(renderer, pass, pictures.packed, object, scene, camera, plane);
     else drawing.draw(renderer, pass, pictures, object, cameras, tile);
     set(pass.texture, pictures.packed.texture);
@@ -447,7 +453,6 @@ export class Passes {
   #forget(object) {
     for (const drawing of this.#drawings.values()) drawing.forget(object);
     this.#objects.delete(object);
-    CLEAR.delete(object);
     object.removeEventListener('removed', this.#onRemoved);
   }
 
