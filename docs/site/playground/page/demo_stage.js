@@ -1,6 +1,7 @@
 // The demo's picture: the stage of the live preview in the studio and on the ground, with its lamp behind the body.
 
 import * as THREE from 'three';
+import { isDistant } from './preview/lamps.js';
 import { PLAIN, Stage } from './preview/stage.js';
 
 /** @typedef {import('../../../../src/sssgen/preview/page_messages.js').BodyPicture} BodyPicture */
@@ -38,6 +39,9 @@ export class DemoStage extends Stage {
     super.look(picture);
     this.swayed = 0;
     this.lamps.lights = picture.lights.map((light) => (light.position[3] ? behind(light, this.ball) : light));
+    const front = this.lamps.handles.filter((handle) => isDistant(handle.userData.lamp));  // they would hide an ear
+    this.scene.remove(...front);
+    this.lamps.handles = this.lamps.handles.filter((handle) => !front.includes(handle));
   }
 
   /** Turns the view a little to and fro until somebody touches it, on machines that draw it at once.
