@@ -47,6 +47,7 @@ def shot(browser: Any, folder: Path) -> Image.Image:
     page.set_default_timeout(120_000)
     with contextlib.closing(page), served(str(folder)) as address:
         page.goto(address)
+        page.wait_for_function("document.querySelector('#panel') || document.querySelector('#message').textContent")
         page.wait_for_timeout(4000)
         if message := page.inner_text("#message"):
             raise RuntimeError(f"{folder.name}: {message}")
