@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.ir.spans import Span
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile
@@ -25,11 +24,10 @@ from sssgen.run.backends import Array, Backend
 from sssgen.run.render import pixel_mesh
 from sssgen.run.render.eye_pictures import with_eye_pictures
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
+from sssgen.run.render.picture_warnings import warnings_of
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
-from sssgen.scene.geometry import Mesh
-from sssgen.scene.geometry_mesh import is_closed
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_reader import MAX_COUNT
@@ -101,21 +99,11 @@ def render(
     if raymarched:
         progress(2, STEPS, f"drawing on {backend.name}")
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend.target, width / height))
-        samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
+        samples = shade(backend, compiled, shell, (width, height), None)
+        hit = front = np.ones((height, width), bool)
     else:
-        samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
-    return _develop(scene, reflection, samples, hit)._replace(warnings=_warnings(scene, reflection))
-
-
-def _warnings(scene: Scene, reflection: Reflection) -> list[Diagnostic]:
-    """A warning about an open mesh under passes that look for the end of the body."""
-    mesh = scene.geometry
-    passes = [drawn["name"] for drawn in reflection["passes"] if drawn["of"] == "body"]
-    if not passes or not isinstance(mesh, Mesh) or is_closed(mesh):
-        return []
-    message = f"the mesh has a hole, or triangles with different orientations, and {passes[0]} looks for its other side"
-    hint = "the light inside is wrong there: close it, and make all triangles counter-clockwise seen from outside"
-    return [Diagnostic("warning", message, Span(mesh.path, 0, 0, 0, 0), hint)]
+        samples, hit, front = _surface(scene, compiled, shell, backend, (width, height), progress)
+    return _develop(scene, reflection, samples, hit)._replace(warnings=warnings_of(scene, reflection, hit, front))
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
@@ -129,8 +117,8 @@ def _reads_rays(entry: EntryRecord) -> bool:
 
 def _surface(
     scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], progress: Progress
-) -> tuple[Array, Array]:
-    """The samples of a surface, and which of them hit it."""
+) -> tuple[Array, Array, Array]:
+    """The samples of a surface, which of them hit it, and which show it from outside."""
     (width, height), edge = size, pixel_mesh.BORDER
     progress(1, STEPS, "casting the eye's rays")
     mesh = place_mesh(scene, compiled, shell, backend.target, size)
@@ -141,7 +129,7 @@ def _surface(
         # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own
         behind = shade(backend, compiled, dataclasses.replace(mesh.shell, front=False), mesh.size, mesh.points)
         picture = np.where(mesh.front[..., None], picture, behind)
-    return picture[inner], mesh.hit[inner]
+    return picture[inner], mesh.hit[inner], mesh.front[inner]
 
 
 class PlacedMesh(NamedTuple):
