@@ -79,7 +79,8 @@ def add_emission_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Compiles everything, then writes or prints it; of a material with an error nothing is written.
 
-    Where several materials are named, the others are written, and the status is 1.
+    Where other materials are named, or other targets that can express the material, these are written, and the status
+    is 1.
     """
     take_default_target(arguments)
     printed = arguments.output == STANDARD_OUTPUT
@@ -91,7 +92,7 @@ def run(arguments: Namespace) -> int:
     finally:
         for trace in traces:
             trace.write(arguments.output)
-    if emitted.errors and len(arguments.MATERIAL) == 1:
+    if emitted.errors and not emitted.files and len(arguments.MATERIAL) == 1:
         raise SssgenError(emitted.errors)
     written = [] if printed else write_files(arguments.output, emitted.files)
     if arguments.json:
@@ -214,8 +215,9 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
                     arguments.standalone,
                 )  # fmt: skip
             except SssgenError as error:
-                if every and isinstance(error, UnsupportedError):
-                    warnings += _omission_warnings(error, material, name)
+                if len(names) > 1 and isinstance(error, UnsupportedError):
+                    omitted = warnings if every else errors
+                    omitted += _omissions(error, material, name, "warning" if every else "error")
                 else:
                     errors += error.diagnostics
                     failed.add(material.name)
@@ -295,10 +297,10 @@ def _materials(arguments: list[str], shell: list[str], errors: list[Diagnostic])
     return [next(iter(of_one_name.values())) for of_one_name in named.values() if len(of_one_name) == 1]
 
 
-def _omission_warnings(error: UnsupportedError, material: Material, target: str) -> list[Diagnostic]:
-    """The warnings that `--target all` has no file of a material for a target."""
+def _omissions(error: UnsupportedError, material: Material, target: str, severity: str) -> list[Diagnostic]:
+    """The diagnostics that a material has no file for one of several targets."""
     left_out = f"{material.name} is not emitted for {target}: "
-    return [entry._replace(severity="warning", message=left_out + entry.message) for entry in error.diagnostics]
+    return [entry._replace(severity=severity, message=left_out + entry.message) for entry in error.diagnostics]
 
 
 def _collect(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
+from typing import Any
 
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
@@ -38,7 +39,17 @@ def add_output(
 def add_targets(parser: argparse.ArgumentParser, default: str | None = DEFAULT_TARGET) -> None:
     """The targets to emit for: `--target`. With None as the default, the command says which target it takes."""
     help = f"targets from `sssgen list targets`, or all (default: {DEFAULT_TARGET})"
-    parser.add_argument("--target", "-t", metavar="T,T|all", help=help, default=default)
+    parser.add_argument("--target", "-t", metavar="T,T|all", help=help, default=default, action=_Joined)
+
+
+class _Joined(argparse.Action):
+    """An option that may be repeated: its texts with commas between them."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option: str | None = None
+    ) -> None:
+        before = getattr(namespace, self.dest)
+        setattr(namespace, self.dest, values if before is self.default else f"{before},{values}")
 
 
 def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:

@@ -69,6 +69,9 @@ class _Reader:
     def material(self) -> Material:
         data, error, place = self.document.data, self.document.error, self.document.place
         sections = ("material", *roles.SECTIONS)
+        if isinstance(named := data.get("material"), str):
+            error(place("material").key, "this is a scene, and no material", f"its material is {named}")
+            self.document.reporter.check()
         for key, content in data.items():
             if key in sections and isinstance(content, dict | list):
                 continue

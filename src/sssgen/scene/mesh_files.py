@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -11,13 +12,16 @@ import numpy as np
 
 from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.pictures.images import decode_srgb
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
 
 SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
+
+COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+"""Extensions of glTF that store triangles in another way."""
 
 
 class FileContent(NamedTuple):
@@ -75,13 +79,20 @@ def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = ""
     trimesh = need("trimesh")
     try:
         data = content()
-        if kind in (".glb", ".gltf"):  # texture coordinates are loaded with the materials
+        if kind in (".glb", ".gltf"):
+            _refuse_compressed(data, kind, shown)
+            # texture coordinates are loaded with the materials
             return _join(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
         loaded = trimesh.load_mesh(io.BytesIO(data), file_type=kind[1:], process=False, skip_materials=True)
         color = _colors(loaded)
         if color is not None:  # of a file format without a colour space: as its editors show them
             color[:, :3] = decode_srgb(color[:, :3])
         return _read(loaded.vertices, loaded.faces, getattr(loaded.visual, "uv", None), None, color)
+    except SssgenError:
+        raise
+    except FileNotFoundError as error:
+        hint = "copy it to the same folder"
+        raise failure(f"there is no file '{error.filename or error}' beside this one", hint, shown) from None
     except Exception as error:  # its readers raise exceptions of any type for a faulty file
         # for bytes that are not text it tries to import a package that guesses encodings
         hint = "" if isinstance(error, ImportError) else f"the reader reports: {type(error).__name__}: {error}"
@@ -113,6 +124,16 @@ def _gltf(data: bytes, kind: str, beside: str) -> tuple[Any, str, Any]:
     resolver = FilePathResolver(beside) if beside else None
     head = data[:end].replace(_SECOND, _CUSTOM).replace(_NORMAL, _OWN_NORMAL)
     return io.BytesIO(head + data[end:]), kind[1:], resolver
+
+
+def _refuse_compressed(data: bytes, kind: str, shown: str) -> None:
+    """Raises SssgenError for a glTF file that needs a decoder of its triangles: they would be read as zeros."""
+    text = data[20 : 20 + int.from_bytes(data[12:16], "little")] if kind == ".glb" else data
+    required = json.loads(text).get("extensionsRequired", ())
+    for name in COMPRESSED:
+        if name in required:
+            hint = "export the mesh without compression"
+            raise failure(f"its triangles are compressed by {name}, which is not read", hint, shown)
 
 
 def _second(mesh: Any) -> Array | None:

@@ -66,12 +66,16 @@ def check_unchanged(folder: str, files: Mapping[str, str | bytes]) -> None:
 
 
 def check_folder(folder: str) -> None:
-    """Raises SssgenError if files cannot be written to a folder because a file has its name, or that of a parent.
-    Commands call it before work that takes long."""
+    """Raises SssgenError if files cannot be written to a folder: a file has its name, or that of a parent, or the user
+    may not write there. Commands call it before work that takes long."""
     while folder and not os.path.exists(folder):
         folder = os.path.dirname(folder)
     if folder and not os.path.isdir(folder):
         raise failure("cannot write the file: this is not a folder", "choose another folder with -o", posix(folder))
+    if not os.access(folder or ".", os.W_OK | os.X_OK):
+        raise failure(
+            "cannot write the file: you may not write to this folder", "choose another with -o", posix(folder)
+        )
 
 
 def write_files(

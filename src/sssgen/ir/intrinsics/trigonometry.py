@@ -8,7 +8,7 @@ from typing import Any
 from sssgen.ir.component_ranges import inverse_hyperbolic_tangent, scaled, within
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import Range, absolute, clip, maximum, rising
-from sssgen.ir.intrinsics.table import F1, HALF_PI, PI, Builtin, Guard, Samples, check_domain
+from sssgen.ir.intrinsics.table import F1, HALF_PI, NONZERO, PI, Builtin, Guard, Samples, check_domain
 
 _PI32 = 3.1415927410125732
 """pi in float32."""
@@ -34,6 +34,10 @@ def _reduced(rt: Any, x: Any) -> Any:
 def _unit_advice(x: Range) -> str:
     noted = ", as rounding alone can exceed 1" if 1.0 < x.size <= 1.01 else ""
     return f"clamp(x, -1.0, 1.0) in place of x{noted}"
+
+
+def _angle_advice(x: Range, y: Range) -> str:
+    return f"{NONZERO} in place of y"  # lint proves it, unlike a sum with step
 
 
 # A table: several fields to a line.
@@ -87,7 +91,7 @@ ROWS = (
         "Arc tangent: of x, in [-pi/2, pi/2]; of x/y in the quadrant of (y, x), in [-pi, pi].",
         fold=lambda x, y=None: math.atan(x) if y is None else check_domain(x != 0.0 or y != 0.0, math.atan2(x, y)),
         range=lambda F, x, y=None: Range(-3.1416, 3.1416) if y else Range(-1.5708, 1.5708),
-        guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "undefined", "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y"),),
+        guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "undefined", "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y", advice=_angle_advice),),
         domain="with two arguments: x != 0 or y != 0, and x != -0, whose sign may be lost; accurate for y != 0 and |y| < 2^126",
         defined=lambda rt, x, y=1.0: ((x != 0.0) & (y == 0.0)) | (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),
         inside=lambda rt, x, y=1.0: (rt.floatBitsToInt(x) != -2**31) & (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),

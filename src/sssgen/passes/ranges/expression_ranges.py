@@ -104,7 +104,7 @@ class ExpressionRanges(CallRanges):
             return self.integer(node, left, right)
         if op == "/":
             return self.division(node, left, right)
-        parts, numbers = [], []
+        parts, numbers, signs = [], [], _signs(node)
         for a, m, b, n in _components(left, right):
             if op == "*":
                 part = self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b
@@ -115,6 +115,8 @@ class ExpressionRanges(CallRanges):
             else:
                 part = self.sum(a, m, b, n, op)
                 number = self.numbers.sum(op, m, n, kind, self.slack(a, b, part, kind))
+                if op == "-" and signs is not None:
+                    part = part.met(signs)
             if self.unguarded and kind == "float":
                 part = self.expand(op, number, part, (m, a), (n, b))
             parts.append(part)
@@ -443,6 +445,20 @@ def _components(left: Value, right: Value) -> Iterator[tuple[Range, int, Range, 
     if len(left.parts) == 1:
         return ((left.parts[0], left.numbers[0], b, n) for b, n in zip(right.parts, right.numbers, strict=True))
     return ((a, m, right.parts[0], right.numbers[0]) for a, m in zip(left.parts, left.numbers, strict=True))
+
+
+def _signs(node: ir.Expr) -> Range | None:
+    """The range of `k * step(…) - c`, which is -c or k - c, if their signs differ: -1 or 1 of `2.0 * step(…) - 1.0`."""
+    if not (isinstance(node, ir.Binary) and isinstance(node.left, ir.Binary) and isinstance(node.right, ir.Literal)):
+        return None
+    factor, stepped = node.left.left, node.left.right
+    if node.left.op != "*" or not (isinstance(stepped, ir.Intrinsic) and stepped.name == "step"):
+        return None
+    if not isinstance(factor, ir.Literal) or not 0.0 < float(node.right.value) < float(factor.value):
+        return None
+    low, high = -float(node.right.value), float(factor.value) - float(node.right.value)
+    slack = 1.0 - 2.0**-20  # the difference is rounded
+    return Range(low / slack, high / slack, min(-low, high) * slack)
 
 
 def _is_count(node: ir.Expr) -> bool:

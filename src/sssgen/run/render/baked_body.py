@@ -11,7 +11,7 @@ import numpy.typing as npt
 from sssgen.material.baked import BakeFile
 from sssgen.scene import body_identity
 from sssgen.scene.bounds import bounds
-from sssgen.scene.geometry import Geometry
+from sssgen.scene.geometry import Geometry, Mesh
 from sssgen.scene.geometry_base import unit
 from sssgen.scene.scene import Light
 from sssgen.support.diagnostics import failure
@@ -28,6 +28,7 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
     """Raises SssgenError if a texture is baked for another shape, or for another scale, than the scene's."""
     body = sidecar.facts.get("body")
     if not isinstance(body, dict):
+        _check_triangles(sidecar, geometry, name)
         return
     if "key" in body and body["key"] != body_identity.key(geometry):
         raise _other_shape(body, geometry, name)
@@ -35,6 +36,24 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
         raise failure(
             f"'{name}' is baked for the scale {body['scale']}, but the scene has {geometry.scale:g}",
             "bake it for this scene: light fades over other lengths in a body of another size",
+        )
+
+
+def _check_triangles(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
+    """Raises SssgenError if a thickness map is baked for a mesh with another number of triangles."""
+    mesh = sidecar.facts.get("mesh")
+    if (
+        sidecar.kind != "thickness"
+        or not isinstance(mesh, dict)
+        or not isinstance(geometry, Mesh)
+        or not isinstance(mesh.get("triangles"), int)
+    ):
+        return
+    own = len(geometry.triangles.corners)
+    if mesh.get("triangles", own) != own:
+        raise failure(
+            f"'{name}' is baked for a mesh of {mesh['triangles']} triangles; {body_identity.name(geometry)} has {own}",
+            "bake it for the scene's mesh",
         )
 
 

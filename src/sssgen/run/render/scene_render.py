@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.ir.spans import Span
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.material.shell_stages import NONE, with_shell
@@ -28,13 +27,13 @@ from sssgen.run.render.environment_maps import reflection_map
 from sssgen.run.render.eye_pictures import with_eye_pictures
 from sssgen.run.render.medium_warnings import medium_warnings
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
+from sssgen.run.render.picture_warnings import warnings_of
 from sssgen.run.render.scene_values import environment_of, shell_of
 from sssgen.run.render.screen_window import Window, whole_window, window_of
 from sssgen.run.render.several_bodies import Body, Canvas, in_order
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
-from sssgen.scene.geometry import Hits, Mesh
-from sssgen.scene.geometry_mesh import is_closed
+from sssgen.scene.geometry import Hits
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.scene.pictures.resizing import resized
 from sssgen.scene.scene import Scene
@@ -109,23 +108,12 @@ def render(
     if raymarched:
         progress(2, STEPS, f"drawing on {backend.name}")
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend.target, width / height))
-        samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
+        samples = shade(backend, compiled, shell, (width, height), None)
+        hit = front = np.ones((height, width), bool)
     else:
-        samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
-    return _develop(scene, reflection, samples, hit)._replace(
-        warnings=[*_warnings(scene, reflection), *medium_warnings(scene, material, reflection)]
-    )
-
-
-def _warnings(scene: Scene, reflection: Reflection) -> list[Diagnostic]:
-    """A warning about an open mesh under passes that look for the end of the body."""
-    mesh = scene.geometry
-    passes = [drawn["name"] for drawn in reflection["passes"] if drawn["of"] == "body"]
-    if not passes or not isinstance(mesh, Mesh) or is_closed(mesh):
-        return []
-    message = f"the mesh has a hole, or triangles with different orientations, and {passes[0]} looks for its other side"
-    hint = "the light inside is wrong there: close it, and make all triangles counter-clockwise seen from outside"
-    return [Diagnostic("warning", message, Span(mesh.path, 0, 0, 0, 0), hint)]
+        samples, hit, front = _surface(scene, compiled, shell, backend, (width, height), progress)
+    warnings = [*warnings_of(scene, reflection, hit, front), *medium_warnings(scene, material, reflection)]
+    return _develop(scene, reflection, samples, hit)._replace(warnings=warnings)
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
@@ -147,13 +135,13 @@ def _compile(scene: Scene, shell: Mapping[str, str], backend: Backend, guards: s
 
 def _surface(
     scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], progress: Progress
-) -> tuple[Array, Array]:
-    """The samples of a surface, and which of them hit it."""
+) -> tuple[Array, Array, Array]:
+    """The samples of a surface, which of them hit it, and which show it from outside."""
     progress(1, STEPS, "casting the eye's rays")
     mesh = place_mesh(scene, compiled, shell, backend.target, size)
     progress(2, STEPS, f"drawing on {backend.name}")
     picture = _shade_mesh(backend, compiled, mesh)
-    return _without_border(picture), _without_border(mesh.hit)
+    return _without_border(picture), _without_border(mesh.hit), _without_border(mesh.front)
 
 
 def _shade_mesh(backend: Backend, compiled: Compiled, mesh: PlacedMesh) -> Array:
@@ -200,7 +188,8 @@ def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progre
             continue
         color, cover = _checked(body.compiled.reflection, _shade_mesh(backend, body.compiled, mesh), mesh.hit)
         canvas.draw(body, window, color, cover, mesh.distance)
-        warnings += _warnings(body.scene, body.compiled.reflection)
+        noted = warnings_of(body.scene, body.compiled.reflection, mesh.hit, mesh.front)
+        warnings += [warning for warning in noted if warning not in warnings]  # those of lights are of all bodies
     linear = canvas.tone_mapped(scene.shell) * scene.exposure
     return RenderedPicture(
         _average(_without_border(linear), scene.samples)[::-1],

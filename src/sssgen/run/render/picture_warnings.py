@@ -1,0 +1,55 @@
+"""Warnings about a picture that was drawn and is probably not the one that was meant: each at its line of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sssgen.ir.spans import Span
+from sssgen.run.backends import Array
+from sssgen.scene.geometry import Geometry, Mesh
+from sssgen.scene.geometry_mesh import is_closed
+from sssgen.scene.scene import Scene
+from sssgen.support.diagnostics import Diagnostic, Reporter
+from sssgen.targets.reflection_record import Reflection
+
+
+def warnings_of(scene: Scene, reflection: Reflection, hit: Array, front: Array) -> list[Diagnostic]:
+    """The warnings about a picture. `hit` is whether a sample shows the surface, `front` whether from outside."""
+    reporter = Reporter(scene.document.reporter.file, "\n".join(scene.document.reporter.lines))
+    if scene.geometry is not None:
+        if not hit.any():
+            hint = "change target or position of [camera], or position of [geometry]"
+            reporter.warn(_camera_key(scene, "target"), "the camera does not see the body", hint)
+        elif _is_seen_from_inside(scene, scene.geometry, hit, front):
+            hint = "move it out: materials are made for the outside of a body"
+            reporter.warn(_camera_key(scene, "position"), "the camera is inside the body", hint)
+    for number, light in enumerate(scene.lights):
+        if not any(light.color):
+            place = scene.document.place("light", number, "color").value
+            reporter.warn(place, "this light is black", "give it a colour, or remove it")
+    return [*reporter.warnings, *_open_mesh(scene.geometry, reflection)]
+
+
+def _is_seen_from_inside(scene: Scene, geometry: Geometry, hit: Array, front: Array) -> bool:
+    if isinstance(geometry, Mesh):  # whose distance would need libigl
+        return is_closed(geometry) and not (hit & front).any()
+    to_object = geometry.to_object()
+    place = to_object[:3, :3] @ np.array(scene.camera.position) + to_object[:3, 3]
+    return bool(geometry.distance(place[None])[0] < 0.0)
+
+
+def _camera_key(scene: Scene, key: str) -> Span:
+    """Where a key of the camera is, or else the camera, or the file."""
+    return scene.document.place("camera", key).value
+
+
+def _open_mesh(mesh: Geometry | None, reflection: Reflection) -> Iterator[Diagnostic]:
+    """A warning about an open mesh under passes that look for the end of the body."""
+    passes = [drawn["name"] for drawn in reflection["passes"] if drawn["of"] == "body"]
+    if passes and isinstance(mesh, Mesh) and not is_closed(mesh):
+        fault = "the mesh has a hole, or triangles with different orientations"
+        message = f"{fault}, and {passes[0]} looks for its other side"
+        hint = "the light inside is wrong there: close it, and make all triangles counter-clockwise seen from outside"
+        yield Diagnostic("warning", message, Span(mesh.path, 0, 0, 0, 0), hint)

@@ -1,0 +1,72 @@
+"""Mistakes of users at the command line: what can be done is done, the rest is an error that says what it is."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+
+import pytest
+
+from sssgen.cli.main import main
+from sssgen.scene import mesh_files
+from sssgen.support.diagnostics import SssgenError
+
+
+def test_a_target_that_cannot_express_a_material_does_not_hide_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["emit", "wax_mouse", "--target", "wgsl,shadertoy", "-o", str(tmp_path)]) == 1
+    assert (tmp_path / "wax_mouse.wgsl").exists()
+    error = "error: wax_mouse is not emitted for shadertoy: Shadertoy cannot supply 'distance_map': it has no sampler3D"
+    assert error in capsys.readouterr().err
+
+
+def test_a_single_target_that_cannot_express_a_material_is_an_error(tmp_path: Path) -> None:
+    assert main(["emit", "wax_mouse", "--target", "shadertoy", "-o", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
+
+
+def test_repeated_targets_are_all_emitted(tmp_path: Path) -> None:
+    assert main(["emit", "ice", "--target", "wgsl", "-t", "hlsl", "-o", str(tmp_path)]) == 0
+    assert {path.name for path in tmp_path.iterdir()} >= {"ice.wgsl", "ice.hlsl"}
+
+
+def test_a_scene_is_no_material(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text('material = "wax.toml"\nsize = [4, 4]\n')
+    assert main(["emit", str(scene), "--target", "wgsl", "-o", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("error:") == 1 and "this is a scene, and no material" in error
+    assert "help: its material is wax.toml" in error
+
+
+def glb(document: dict[str, object]) -> bytes:
+    text = json.dumps({"asset": {"version": "2.0"}, **document}).encode()
+    text += b" " * (-len(text) % 4)
+    return struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+@pytest.mark.parametrize("name", ["KHR_draco_mesh_compression", "EXT_meshopt_compression"])
+def test_compressed_triangles_are_refused(tmp_path: Path, name: str) -> None:
+    mesh = tmp_path / "mesh.glb"
+    mesh.write_bytes(glb({"extensionsRequired": [name]}))
+    with pytest.raises(SssgenError, match=f"its triangles are compressed by {name}, which is not read"):
+        mesh_files.read(str(mesh))
+
+
+def test_a_missing_buffer_is_named(tmp_path: Path) -> None:
+    mesh = tmp_path / "mesh.gltf"
+    buffers = {"buffers": [{"byteLength": 36, "uri": "gone.bin"}]}
+    mesh.write_text(json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], **buffers}))
+    with pytest.raises(SssgenError, match=r"there is no file 'gone\.bin' beside this one"):
+        mesh_files.read(str(mesh))
+
+
+def test_a_folder_that_one_may_not_write_to_is_refused_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from sssgen.support import file_writer
+
+    file_writer.check_folder(str(tmp_path / "new"))
+    monkeypatch.setattr(file_writer.os, "access", lambda path, mode: False)
+    with pytest.raises(SssgenError, match="you may not write to this folder"):
+        file_writer.check_folder(str(tmp_path / "new"))
