@@ -56,7 +56,7 @@ def test_every_preset_has_a_page_and_the_search_knows_its_name() -> None:
     pages = preset_pages.pages()
     assert list(pages) == [f"docs/reference/presets/{name}.md" for name in presets()]
     assert "{index} ! wax\n" in pages["docs/reference/presets/wax.md"]
-    assert "(../techniques/interior_octaves.md)" in pages["docs/reference/presets/wax.md"]
+    assert "(../techniques/interior_octaves_refracted.md)" in pages["docs/reference/presets/wax.md"]
     assert all(f"(reference/presets/{name}.md)" in preset_pages.listed() for name in presets())
 
 
