@@ -50,6 +50,7 @@ PERMITTED = {
             "beer_lambert",
             "constant_thickness",
             "interior_octaves",
+            "lamps_through_body",
             "lobe_normalized",
             "seen_through",
             "seen_through_body",

@@ -12,6 +12,7 @@ import os
 from sssgen.interchange.gltf_writer import export
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import SURROUNDINGS
+from sssgen.ir.frame_passes import BEHIND
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
 from sssgen.material.shell_stages import with_shell
@@ -61,6 +62,7 @@ def engine_files(request: Request, folder: str) -> Files:
     values = shared_values(request) | {
         "passes": f"{request.name}_passes.gd" in compiled.files,
         "textures": bound_textures(material, compiled.reflection),
+        "shows_scene": any(drawn["name"] == BEHIND for drawn in compiled.reflection["passes"]),
     }
     if engine.has_folders:
         return unity_assets.files(request, compiled, values, folder)

@@ -172,15 +172,17 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
     texture = [pair for stage in replaced for pair in stage.values if pair[0] == "entering_texture"]
     lengths = [] if preset.scatters else [MaterialSection("thickness", "back_face_thickness")]
     share = 1.0 if preset.scatters else preset.clear
-    values = (
+    entering = (
         *texture, ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
-        ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]),
     )  # fmt: skip
+    values = (*entering, ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]))
     fixed: tuple[str, ...] = ()
     if preset.scatters:  # too little of the scene is seen to draw it once more
         values, fixed = (*values, ("shows_scene", False)), ("shows_scene",)
     comment = "The engine's surroundings are seen through; for a sky of two colours set sky_below and sky_above."
-    return [*lengths, *kept, MaterialSection("translucency", "seen_through_body", values, fixed=fixed, comment=comment)]
+    seen = MaterialSection("translucency", "seen_through_body", values, fixed=fixed, comment=comment)
+    lamps = [] if preset.scatters else [MaterialSection("translucency", "lamps_through_body", entering)]
+    return [*lengths, *kept, seen, *lamps]
 
 
 def _fast(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]:
