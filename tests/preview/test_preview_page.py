@@ -47,7 +47,7 @@ def shown(browser: Any, stone: Path) -> Iterator[Shown]:
 def color(picture: Any) -> Any:
     """The mean colour below the middle, where no message covers the body."""
     height, width = picture.shape[:2]
-    return picture[height // 2 : height // 2 + 40, width // 2 - 20 : width // 2 + 20].mean(axis=(0, 1))
+    return picture[height // 2 + 10 : height // 2 + 50, width // 2 - 20 : width // 2 + 20].mean(axis=(0, 1))
 
 
 def test_a_save_shows_the_new_picture_and_an_error_keeps_it(shown: Shown, stone: Path) -> None:
