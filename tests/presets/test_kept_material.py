@@ -85,8 +85,8 @@ def test_the_mean_color_is_that_of_the_preset(quality: str, head: str, capsys: p
         assert shown == pytest.approx(plain["base_color"].values["tint"][:3], rel=1e-3)
     else:
         assert shown[0] > shown[1] > shown[2] > 0.0
-        halved = 0.5 * np.array(plain["interior_octaves"].values["octaves"])
-        assert detailed["interior_octaves"].values["octaves"] == pytest.approx(halved)
+        halved = 0.5 * np.array(plain["interior_octaves_refracted"].values["octaves"])
+        assert detailed["interior_octaves_refracted"].values["octaves"] == pytest.approx(halved)
 
 
 def test_clear_and_thin_bodies_take_the_color_on_request(head: str, capsys: pytest.CaptureFixture[str]) -> None:

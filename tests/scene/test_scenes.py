@@ -122,7 +122,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ('[medium]\npreset = "marbel"\n' + BALL + LIT, "did you mean 'marble'", 2),
         ('[medium]\npreset = "marble"\nabsorption = [1, 1, 1]\n' + BALL + LIT, "a preset has its own absorption", 3),
         ('[medium]\npreset = "marble"\nanisotropy = 0.1\n' + BALL + LIT, "a preset has its own anisotropy", 3),
-        ("[medium]\nunit_mm = 3\n" + BALL + LIT, "given per world unit", 2),
+        ("[medium]\nscattering = [1, 1, 1]\nunit_mm = 3\n" + BALL + LIT, "given in world units", 3),
         ("[medium]\nscattering = [0.0, 0.0, 0.0]\n" + BALL + LIT, "this medium does not scatter", 2),
         ("[medium]\nscattering = [1, 1]\n" + BALL + LIT, "'scattering' takes 3 numbers", 2),
         ("[medium]\nscattering = [1, 1, -1]\n" + BALL + LIT, "'scattering' cannot be -1", 2),

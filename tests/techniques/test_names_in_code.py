@@ -41,6 +41,10 @@ PERMITTED = {
         "the choice of techniques for a foreign material",
         CHOSEN_FOR_IMPORTS,
     ),
+    "presets/boundary_light.py": (
+        "what a refracting surface changes of stages",
+        {"base_color", "interior_octaves", "interior_octaves_refracted"},
+    ),
     "presets/kept_material.py": ("a field of the neutral record", {"base_color"}),
     "presets/preset_stages.py": (
         "the stages of ready materials",
@@ -49,7 +53,6 @@ PERMITTED = {
             "base_color",
             "beer_lambert",
             "constant_thickness",
-            "interior_octaves",
             "lamps_through_body",
             "lobe_normalized",
             "seen_through",
