@@ -21,6 +21,12 @@ from sssgen.support.diagnostics import SssgenError
 SIZE = BodySize(20.0, 0.5)
 
 
+def passes(name: str, quality: str) -> set[str]:
+    """The pictures that the material in three.js draws."""
+    material = parse_material(preset_text(preset(name), quality, name, SIZE), f"{name}.toml")
+    return {drawn["name"] for drawn in sssgen.compile(material, "threejs").reflection["passes"]}
+
+
 def required(name: str, quality: str) -> tuple[str, ...]:
     text = preset_text(preset(name), quality, name, SIZE)
     return requirements(parse_material(text, f"{name}.toml").stages)
@@ -112,3 +118,9 @@ def test_the_documents_name_every_preset() -> None:
     listed = page.partition("In their order: ")[2].partition(".")[0]
     assert re.findall(r"\w+", listed) == list(presets())
     assert f"[{len(presets())} presets](docs/presets.md)" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_clear_bodies_alone_draw_the_scene_behind_them() -> None:
+    assert "scene_behind" in passes("honey", "good")
+    assert not passes("honey", "fast")
+    assert passes("jade", "good") == {"back_faces", "light_layers"}

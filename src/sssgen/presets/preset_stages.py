@@ -96,7 +96,8 @@ def _choice(preset: Preset, quality: str, size: BodySize, kept: SurfaceModel | N
 
     if any(preset.sheet) or (quality == "fast" and not preset.scatters):
         # one thickness: its unit is free, and here it is the mean chord
-        return choose(preset.model(size.unit_mm * size.mean_chord), 1.0)
+        choice = choose(preset.model(size.unit_mm * size.mean_chord), 1.0)
+        return choice._replace(stages=[_without_scene(stage) for stage in choice.stages])
     if quality == "good" or not preset.scatters:
         choice = choose(preset.model(size.unit_mm), size.mean_chord)
         stages = [_behind_boundary(preset, size, stage) for stage in choice.stages]
@@ -176,13 +177,18 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
         *texture, ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
     )  # fmt: skip
     values = (*entering, ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]))
-    fixed: tuple[str, ...] = ()
-    if preset.scatters:  # too little of the scene is seen to draw it once more
-        values, fixed = (*values, ("shows_scene", False)), ("shows_scene",)
     comment = "The engine's surroundings are seen through; for a sky of two colours set sky_below and sky_above."
-    seen = MaterialSection("translucency", "seen_through_body", values, fixed=fixed, comment=comment)
-    lamps = [] if preset.scatters else [MaterialSection("translucency", "lamps_through_body", entering)]
-    return [*lengths, *kept, seen, *lamps]
+    seen = MaterialSection("translucency", "seen_through_body", values, comment=comment)
+    if preset.scatters:  # too little of the scene is seen to draw it once more
+        return [*lengths, *kept, _without_scene(seen)]
+    return [*lengths, *kept, seen, MaterialSection("translucency", "lamps_through_body", entering)]
+
+
+def _without_scene(stage: MaterialSection) -> MaterialSection:
+    """The stage with the mean light of the surroundings in place of a picture of the scene."""
+    if stage.technique not in ("seen_through", "seen_through_body"):
+        return stage
+    return stage._replace(values=(*stage.values, ("scene_share", 0.0)), fixed=(*stage.fixed, "scene_share"))
 
 
 def _fast(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]:
