@@ -21,7 +21,15 @@ import wgpu
 import sssgen
 from sssgen.run.backends import Array
 from sssgen.scene import octahedron
-from sssgen.scene.light_response import HARMONICS, UNSCATTERED, Incoming, LightResponse, from_bytes, volume
+from sssgen.scene.light_response import (
+    HARMONICS,
+    UNSCATTERED,
+    Incoming,
+    LightResponse,
+    arriving_shares,
+    from_bytes,
+    volume,
+)  # fmt: skip
 
 KERNEL = Path(sssgen.__file__).parent / "targets/javascript/webgpu_relight.js"
 WORKGROUP = 64
@@ -45,9 +53,9 @@ def data_of(response: LightResponse) -> list[Array]:
     arriving = response.arriving if response.arriving.size else np.zeros((1, 4), np.uint8)
     around = np.zeros((HARMONICS, count, 4), np.float32)
     around[..., :3] = np.moveaxis(response.surroundings * (response.largest / 127.0)[..., None], 1, 2)
-    roots = np.maximum(np.arange(256) * response.highest / 255.0, 3e-5)
+    roots: Array = np.arange(256) * (response.highest / 255.0)
     shares = np.zeros((256, 4), np.float32)
-    shares[:, :3] = UNSCATTERED * roots[:, None] ** (2.0 * response.powers)
+    shares[:, :3] = UNSCATTERED * arriving_shares(roots, response.powers)
     by_voxel = np.ascontiguousarray(np.moveaxis(latents.reshape(groups, 4, count), 1, 2))
     return [response.cells.astype(np.uint32), by_voxel, table, arriving, around, shares]
 

@@ -9,7 +9,16 @@ import pytest
 
 from oracle import Array, close, rng, unit
 from sssgen.scene import octahedron
-from sssgen.scene.light_response import LightResponse, checksum, from_bytes, from_light, harmonics, lit, to_bytes
+from sssgen.scene.light_response import (
+    LightResponse,
+    arriving_shares,
+    checksum,
+    from_bytes,
+    from_light,
+    harmonics,
+    lit,
+    to_bytes,
+)  # fmt: skip
 from sssgen.scene.scene import Light
 
 SIDE, RANK, SHAPE = 8, 3, (3, 4, 5)
@@ -59,6 +68,16 @@ def test_lights_add_and_have_colours() -> None:
     colored = [distant(first, (1.0, 2.0, 0.5)), distant(second, (0.0, 0.3, 1.0))]
     both = lit(response, [from_light(response, light, IDENTITY) for light in colored])
     close(both, volumes[0] * (1.0, 2.0, 0.5) + volumes[1] * (0.0, 0.3, 1.0))
+
+
+def test_light_that_a_surface_focuses_has_no_colour() -> None:
+    """A power of a share above 1 would be a share above that of the light itself."""
+    powers = np.array([0.5, 1.0, 4.0])
+    close(arriving_shares(np.array([1.5]), powers), 2.25 * np.ones((1, 3)), 1e-12)
+    roots = np.linspace(0.0, 2.0, 401)
+    shares = arriving_shares(roots, powers)
+    close(shares[:200], np.maximum(roots[:200, None], 3e-5) ** (2.0 * powers), 1e-12)
+    assert (np.diff(shares, axis=0) >= 0.0).all() and np.abs(np.diff(shares, axis=0)).max() < 0.05
 
 
 def test_a_far_lamp_is_a_distant_light_and_a_near_one_has_its_own_ways() -> None:

@@ -46,7 +46,7 @@ class LightResponse(NamedTuple):
     `highest`, for the directions of an octahedral map; (voxels, 0) where the table has all light"""
     highest: float
     powers: Array
-    """(3,): the powers of this share that are those of the channels"""
+    """(3,): the powers of this share that are those of the channels, below a share of 1"""
     surroundings: npt.NDArray[np.int8]
     """(9, 3, voxels): the weights of spherical harmonics, times 127 / `largest`"""
     largest: Array
@@ -130,8 +130,18 @@ def _arriving(response: LightResponse, towards: Array) -> Array:
     """(3, voxels): the share of light that arrives without being scattered."""
     texels, weights = octahedron.mix(towards, octahedron.side_of(response.arriving.T))
     root = (weights * response.arriving[np.arange(len(response.arriving))[:, None], texels]).sum(axis=1)
-    share: Array = np.maximum(root * (response.highest / 255.0), 1e-9) ** (2.0 * response.powers[:, None])
-    return share
+    return arriving_shares(root * (response.highest / 255.0), response.powers).T
+
+
+def arriving_shares(roots: Array, powers: Array) -> Array:
+    """The shares of the channels whose stored root is one of `roots` (n,), before it became a byte: (n, 3).
+
+    A share above 1 is light that a curved surface focuses: it is the same for all channels, and only what the medium
+    leaves of light differs between them.
+    """
+    share = np.maximum(roots, 3e-5)[:, None] ** 2
+    result: Array = np.where(share < 1.0, share**powers, share)
+    return result
 
 
 def harmonics(directions: Array) -> Array:

@@ -95,7 +95,7 @@ namespace Sssgen {
                 sum[channel] = new float[count];
                 shares[channel] = new float[256];
                 for (int root = 0; root < 256; root++) {
-                    shares[channel][root] = Unscattered * Mathf.Pow(Mathf.Max(root * highest / 255, 3e-5f), 2 * powers[channel]);
+                    shares[channel][root] = Unscattered * ArrivingShare(root * highest / 255, powers[channel]);
                 }
             }
         }
@@ -196,6 +196,12 @@ namespace Sssgen {
                     sum[channel][voxel] += strength * Part(lamp.Color, channel) * light;
                 }
             }
+        }
+
+        /// <summary>The share of a channel. One above 1 is light that a curved surface focuses: the same for all channels.</summary>
+        private static float ArrivingShare(float root, float power) {
+            float share = Mathf.Max(root * root, 1e-9f);
+            return share < 1 ? Mathf.Pow(share, power) : share;
         }
 
         /// <summary>The stored root between the mixed texels of a voxel.</summary>

@@ -63,8 +63,10 @@ class Response:
 			places.append(low + (Vector3(place) + 0.5 * Vector3.ONE) * step)
 		var powers := _vector(facts["powers"])
 		for root in 256:
-			var share := maxf(root * facts["highest"] / 255.0, 3e-5)
-			_shares.append(UNSCATTERED * Vector4(share ** (2.0 * powers.x), share ** (2.0 * powers.y), share ** (2.0 * powers.z), 0.0))
+			var share := maxf(root * facts["highest"] / 255.0, 3e-5) ** 2.0
+			# a share above 1 is light that a curved surface focuses: the same for all channels
+			var shares := Vector3(share ** powers.x, share ** powers.y, share ** powers.z) if share < 1.0 else Vector3.ONE * share
+			_shares.append(UNSCATTERED * Vector4(shares.x, shares.y, shares.z, 0.0))
 		_read_numbers(_bytes(data, about["latents"]))
 		_read_table(data, about["table"])
 		_read_surroundings(_bytes(data, about["surroundings"]), facts["largest"])

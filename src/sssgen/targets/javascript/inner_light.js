@@ -4,6 +4,13 @@ const TYPES = { uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, uint32:
 /** The root of light that has not been scattered, relative to its irradiance. */
 const UNSCATTERED = 0.25;
 
+/** The share of a channel whose stored root is `root`. A share above 1 is light that a curved surface focuses: the same for all channels.
+ * @param {number} root @param {number} power */
+function arrivingShare(root, power) {
+  const share = Math.max(root, 3e-5) ** 2;
+  return share < 1 ? share ** power : share;
+}
+
 /** A number in half a float. */
 export function fromHalf(bits) {
   const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 32768 ? -1 : 1;
@@ -74,7 +81,7 @@ export class LightResponse {
     this.arrivingSide = Math.round(Math.sqrt(this.arriving.length / this.count));
     /** For each stored root the light of each channel that has not been scattered. */
     this.shares = facts.powers.map((power) => (
-      Float32Array.from({ length: 256 }, (_, root) => UNSCATTERED * (Math.max((root * facts.highest) / 255, 3e-5) ** (2 * power)))
+      Float32Array.from({ length: 256 }, (_, root) => UNSCATTERED * arrivingShare((root * facts.highest) / 255, power))
     ));
     /** The parameters of the technique, by their names there. */
     this.parameters = facts.parameters;
