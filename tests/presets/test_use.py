@@ -149,7 +149,8 @@ def test_a_new_material_begins_with_a_preset(block: str, capsys: pytest.CaptureF
 def test_a_page_without_the_bundle_loads_three_from_the_network(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SSSGEN_NODE_MODULES", str(Path("none").resolve()))
     assert main(["use", "wax", block, "-o", "out"]) == 0
-    assert "https://cdn.jsdelivr.net/npm/three@" in Path("out", "index.html").read_text(encoding="utf-8")
+    page = Path("out", "index.html").read_text(encoding="utf-8")
+    assert "https://cdn.jsdelivr.net/npm/three@" in page and "which was not reached" in page
     assert not Path("out", "library").exists()
 
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
+import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from folders import ROOT
 from sssgen.run import web_library as module
 from sssgen.run.web_library import BUNDLE, NPM, bundle, library
+from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 
 PREVIEW = Path(module.__file__).parent.parent / "preview"
@@ -50,6 +54,31 @@ def test_npms_files_serve_where_there_is_no_bundle(empty: Path) -> None:
     found = library()
     assert set(found.imports.values()) <= set(found.files)
     assert json.loads(found.import_map())["imports"]["three"] == "./library/three/build/three.module.js"
+
+
+def test_npm_fetches_the_files_once(
+    empty: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("SSSGEN_NODE_MODULES")
+    monkeypatch.setattr(module, "node_modules", lambda: empty / "nothing")
+    monkeypatch.setattr(cache, "folder", lambda: str(empty))
+    monkeypatch.setattr(shutil, "which", lambda name: name)
+    commands = []
+
+    def npm(command: tuple[str, ...], **options: Any) -> None:
+        commands.append(command)
+        if len(commands) == 1:
+            raise subprocess.CalledProcessError(1, command)
+        for file in (*NPM.values(), *module._IMPORTED_BY_THESE):
+            written(Path(command[3]) / "node_modules" / file)
+
+    monkeypatch.setattr(subprocess, "run", npm)
+    with pytest.raises(SssgenError, match="npm package three"):
+        library()
+    for _ in range(2):
+        assert {path.parent for path in library().files.values()} <= {path.parent for path in empty.rglob("*.js")}
+    assert len(commands) == 2 and commands[1][-1] == f"three@{module.VERSION}"
+    assert capsys.readouterr().err.count("npm fetches three.js") == 2
 
 
 def test_all_that_the_page_imports_is_in_the_bundle() -> None:

@@ -22,7 +22,7 @@ from sssgen.presets.bound_textures import bound_textures
 from sssgen.presets.preset_stages import preset_material
 from sssgen.presets.project_templates import Files, folder_names, render
 from sssgen.presets.request import MESH, Request, shared_values
-from sssgen.run.web_library import library, network_import_map
+from sssgen.run.web_library import NETWORK, library, network_import_map
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import place
 
@@ -73,6 +73,7 @@ def engine_files(request: Request, folder: str) -> Files:
     if engine.is_page:
         values["package"] = engine.package
         values["import_map"], libraries = _import_map(request.target)
+        values["network"] = NETWORK if NETWORK in values["import_map"] else ""
         files |= libraries
     for name, template in _templates(request).items():
         files[name] = render(template, **values)
@@ -101,8 +102,7 @@ def _gltf_files(request: Request, material: Material) -> Files:
 def _import_map(target: str) -> tuple[str, Files]:
     """The import map of a page, or '', and the files of the engine that it names.
 
-    There are none where sssgen was installed without npm, which makes the bundle of three.js: a browser then loads them
-    from the network.
+    Without the bundle of three.js and without npm there are none: a browser then loads them from the network.
     """
     if target in _IMPORTS:
         return json.dumps({"imports": _IMPORTS[target]}, indent=2), {}

@@ -1,13 +1,20 @@
-"""What pages with three.js import: the bundle that `make setup` makes and the wheel has, or else npm's own files."""
+"""What pages with three.js import: the bundle that `make setup` makes and the wheel has, or else npm's own files, which
+are fetched once where npm is installed."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import shutil
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 from sssgen.run.machine_parts import node_modules
+from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.installation import npm_hint
 from sssgen.support.paths import PACKAGE, folder
@@ -27,7 +34,10 @@ NPM = {
 """What the page imports → the file among npm's packages. `library_bundle.js` exports the same."""
 VERSION = "0.187.0"
 """Of three.js, as in the Makefile."""
-_NETWORK = f"https://cdn.jsdelivr.net/npm/three@{VERSION}"
+FETCH_SECONDS = 60
+"""Until npm is stopped."""
+NETWORK = f"https://cdn.jsdelivr.net/npm/three@{VERSION}"
+"""Where browsers load three.js from, without files of it."""
 _IMPORTED_BY_THESE = (
     "three/build/three.core.js",
     "three/examples/jsm/utils/BufferGeometryUtils.js",
@@ -50,7 +60,7 @@ class Library(NamedTuple):
 
 def network_import_map() -> str:
     """An import map whose files a browser loads from a public mirror of npm."""
-    addresses = {name: file.replace("three", _NETWORK, 1) for name, file in NPM.items()}
+    addresses = {name: file.replace("three", NETWORK, 1) for name, file in NPM.items()}
     return json.dumps({"imports": addresses}, indent=2)
 
 
@@ -62,11 +72,34 @@ def bundle() -> Path:
 
 def library() -> Library:
     """The bundle, or npm's files where it is not made or $SSSGEN_NODE_MODULES is set. Raises SssgenError."""
-    file = bundle()
-    if file.is_file() and not os.environ.get("SSSGEN_NODE_MODULES"):
+    file, configured = bundle(), os.environ.get("SSSGEN_NODE_MODULES")
+    if file.is_file() and not configured:
         return Library(dict.fromkeys(NPM, BUNDLE), {BUNDLE: file})
-    packages = node_modules()
-    files = {file: packages / file for file in (*NPM.values(), *_IMPORTED_BY_THESE)}
-    if not all(path.is_file() for path in files.values()):
+    if not (files := _files_of(node_modules())) and not configured:
+        files = _files_of(_fetched())
+    if not files:
         raise failure("the page needs the npm package three", npm_hint("three"))
     return Library(dict(NPM), files)
+
+
+def _files_of(packages: Path) -> dict[str, Path]:
+    """The files of the page in a folder that npm filled; none where one is missing."""
+    files = {file: packages / file for file in (*NPM.values(), *_IMPORTED_BY_THESE)}
+    return files if all(path.is_file() for path in files.values()) else {}
+
+
+def _fetched() -> Path:
+    """The folder of the packages that npm fetches into the cache, once. Without npm or a network it stays empty."""
+    folder = Path(cache.folder(), f"three@{VERSION}")
+    npm = shutil.which("npm")
+    if folder.is_dir() or not npm or not cache.folder():
+        return folder / "node_modules"
+    print(f"npm fetches three.js {VERSION}, once", file=sys.stderr, flush=True)
+    with tempfile.TemporaryDirectory(dir=cache.folder()) as temporary:
+        made = os.path.join(temporary, "three")
+        options = ("--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error", "--fetch-retries=0")
+        command = (npm, "install", "--prefix", made, *options, f"three@{VERSION}")
+        with contextlib.suppress(OSError, subprocess.SubprocessError):
+            subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=True, timeout=FETCH_SECONDS)
+            os.rename(made, folder)  # another process finds the whole folder or none
+    return folder / "node_modules"
