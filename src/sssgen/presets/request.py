@@ -20,6 +20,8 @@ from sssgen.presets.used_mesh import UsedMesh
 from sssgen.scene.mesh_suitability import MeshNeeds
 
 MESH = "body.glb"
+REST = "rest.glb"
+"""The other parts of a glTF file"""
 RANK = 16
 """The numbers of a voxel of baked light."""
 _LAMP, _SHEET_LAMP = 260, 50
@@ -79,6 +81,12 @@ class Request(NamedTuple):
         return None if part is None or part.imported is None else part.imported.model
 
     @property
+    def rest(self) -> bytes:
+        """The file of the parts with other materials, where the project shows them."""
+        part = self.mesh.part
+        return part.rest if part is not None and self.engine.shows_rest else b""
+
+    @property
     def name(self) -> str:
         """Of the material and its files."""
         return self.preset.name
@@ -119,7 +127,7 @@ def shared_values(request: Request) -> dict[str, object]:
         "title": preset.title, "name": request.name, "mesh": " ".join(os.path.basename(mesh.path).split()),
         "target": request.target, "quality": f"{request.quality}, {QUALITIES[request.quality]}",
         "unit_mm": f"{mesh.size.unit_mm:.4g}", "command": request.command, "open": request.opened,
-        "change": request.change, "body": MESH,
+        "change": request.change, "body": MESH, "rest": REST if request.rest else "",
     }  # fmt: skip
     places = {
         "center": center.round(6).tolist(), "radius": round(mesh.radius, 6), "low": [*mesh.low], "high": [*mesh.high],
