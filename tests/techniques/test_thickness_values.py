@@ -389,13 +389,14 @@ def test_a_beam_of_the_eye_counts_what_is_behind_the_surface() -> None:
     place = np.stack([(np.arange(40) + 0.5) / 40.0, np.full(40, 0.525)], axis=1)
     values = {"back_face_map": Texture(depth, "nearest", "clamp"), "eye_distance": 2.0}
     beam = technique("back_face_thickness_soft")
-    total, count = technique("back_face_thickness")(screen_uv=place, **values), np.ones(40)
+    total, weight = technique("back_face_thickness")(screen_uv=place, **values), np.ones(40)
     for across in beam_places(0.2 / 2.0):
         moved = np.clip(place + across * [0.68, 1.2], 0.0, 0.999)
-        inside = depth[(moved[:, 1] * 20).astype(int), (moved[:, 0] * 40).astype(int), 0] - 2.0
-        total, count = total + np.maximum(inside, 0.0), count + (inside > 0.0)
+        inside = np.maximum(depth[(moved[:, 1] * 20).astype(int), (moved[:, 0] * 40).astype(int), 0] - 2.0, 0.0)
+        share = np.minimum(inside / 0.2, 1.0)
+        total, weight = total + share * inside, weight + share
     lengths = beam(screen_uv=place, beam_radius=0.2, **values)
-    close(lengths, total / count, atol=1e-5)
+    close(lengths, total / weight, atol=1e-5)
     assert (lengths[12:18] == 0.5).any() and ((lengths > 0.6) & (lengths < 1.4)).sum() > 2 and lengths[36:].max() == 0.0
 
 
