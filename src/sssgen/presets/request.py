@@ -33,9 +33,9 @@ _LAMP_SQUARE = 13.8
 _ROOM, _BRIGHT_ROOM = 0.15, 0.7
 """The strength of the surroundings, for bodies that a lamp makes glow and for clear ones. Engines have other
 surroundings and falloffs: the factors in `shared_values` were chosen so that the projects look alike."""
-BRIGHTNESS = 2.0
-"""The light of the picture of the surroundings where their strength is 1. The page with WebGPU has twice as much: it is
-then as bright as the rooms of engines."""
+BRIGHTNESS = 4.0
+"""The light of the picture of the surroundings where their strength is 1: it is then as bright as the rooms of
+engines."""
 _EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
 """The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
 
