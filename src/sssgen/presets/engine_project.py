@@ -72,8 +72,8 @@ def engine_files(request: Request, folder: str) -> Files:
         values |= {"air": webgpu_page.AIR, "glow": webgpu_page.glow()}
     if engine.is_page:
         values["package"] = engine.package
-        values["import_map"], libraries = _import_map(request.target)
-        values["network"] = NETWORK if NETWORK in values["import_map"] else ""
+        import_map, libraries = _import_map(request.target)
+        values |= {"import_map": import_map, "network": NETWORK if NETWORK in import_map else ""}
         files |= libraries
     for name, template in _templates(request).items():
         files[name] = render(template, **values)
