@@ -98,7 +98,7 @@ def test_clear_and_thin_bodies_take_the_color_on_request(head: str, capsys: pyte
 
 
 def test_baked_light_has_no_picture(head: str, capsys: pytest.CaptureFixture[str], monkeypatch: Any) -> None:
-    monkeypatch.setattr("sssgen.cli.use._bake", lambda folder, bar: [])
+    monkeypatch.setattr("sssgen.presets.project_files._baked_light", lambda *_: {})
     report = used("skin_fair", head, "--quality", "best", capsys=capsys)
     assert outcomes(report)["baseColorTexture"] == "left out"
     assert outcomes(report)["normalTexture"] == "mapped"

@@ -65,9 +65,10 @@ class Request(NamedTuple):
     @property
     def needs(self) -> MeshNeeds:
         """What the material needs of the mesh."""
-        traced = self.quality != "good" or not self.preset.scatters
-        path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if self.preset.scatters else 1.0
-        return MeshNeeds(self.preset.scatters, (), None if traced else self.mesh.size.mean_chord / path)
+        inside = self.quality != "fast" and not any(self.preset.sheet)
+        scattered = inside and self.preset.scatters and not self.baked
+        path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if scattered else 1.0
+        return MeshNeeds(inside, (), self.mesh.size.mean_chord / path if scattered else None, MESH)
 
     @property
     def shows_color(self) -> bool:

@@ -28,7 +28,7 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
     """Raises SssgenError if a texture is baked for another shape, or for another scale, than the scene's."""
     body = sidecar.facts.get("body")
     if not isinstance(body, dict):
-        _check_triangles(sidecar, geometry, name)
+        _check_mesh(sidecar, geometry, name)
         return
     if "key" in body and body["key"] != body_identity.key(geometry):
         raise _other_shape(body, geometry, name)
@@ -39,22 +39,25 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
         )
 
 
-def _check_triangles(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
-    """Raises SssgenError if a thickness map is baked for a mesh with another number of triangles."""
+def _check_mesh(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
+    """Raises SssgenError if a thickness map is baked for another mesh; older JSONs have its number of triangles alone,
+    and no area, volume and centre."""
     mesh = sidecar.facts.get("mesh")
-    if (
-        sidecar.kind != "thickness"
-        or not isinstance(mesh, dict)
-        or not isinstance(geometry, Mesh)
-        or not isinstance(mesh.get("triangles"), int)
-    ):
+    if sidecar.kind not in ("thickness", "transmittance") or not isinstance(mesh, dict):
         return
-    own = len(geometry.triangles.corners)
-    if mesh.get("triangles", own) != own:
+    if not isinstance(geometry, Mesh):
+        return
+    triangles, own_name = geometry.triangles, body_identity.name(geometry)
+    count, own = mesh.get("triangles"), len(triangles.corners)
+    if isinstance(count, int) and count != own:
         raise failure(
-            f"'{name}' is baked for a mesh of {mesh['triangles']} triangles; {body_identity.name(geometry)} has {own}",
-            "bake it for the scene's mesh",
+            f"'{name}' is baked for a mesh of {count} triangles; {own_name} has {own}", "bake it for the scene's mesh"
         )
+    if not body_identity.has_measures(mesh, triangles.places, triangles.corners):
+        raise failure(
+            f"'{name}' is baked for another mesh than {own_name}, or for an older version of it: its triangles are "
+            "elsewhere", "bake it for the scene's mesh"
+        )  # fmt: skip
 
 
 def _other_shape(body: Mapping[str, Any], geometry: Geometry, name: str) -> Exception:
