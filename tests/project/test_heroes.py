@@ -118,3 +118,17 @@ def test_a_mesh_file_has_colours_and_texture_coordinates(stage: Any, tmp_path: P
     visual = next(iter(trimesh.load(tmp_path / "cube.glb", force="scene").geometry.values())).visual
     assert np.asarray(visual.vertex_attributes["color"])[:, 0] == pytest.approx(128, abs=1)
     assert np.ptp(visual.uv, axis=0) == pytest.approx([2.0, 2.0])
+
+
+def test_a_flame_is_split_into_pieces_of_one_color(stage: Any) -> None:
+    from hero_stage.mesh import Mesh
+    from hero_stage.traced import pieces_of_one_color
+
+    vertices = np.random.default_rng(0).random((60, 3))
+    colors = np.column_stack([np.repeat(vertices[:20, :1], 3, axis=0) * [1.0, 0.5, 0.0], np.ones(60)])
+    mesh = Mesh(vertices, np.arange(60).reshape(-1, 3), np.ones((60, 3)), colors=colors)
+    pieces = pieces_of_one_color(mesh)
+    assert sorted(np.concatenate([piece.faces for _, piece in pieces])[:, 0]) == list(range(0, 60, 3))
+    for color, piece in pieces:
+        assert np.abs(colors[piece.faces, :3] - color).max() <= 0.5 / 16
+        assert not len(piece.colors)
