@@ -43,8 +43,8 @@ CAPTIONS = {
     "skin_ear": "An ear with the low sun behind it. The medium is near that of measured skin: red light goes farther "
     "than green and blue. Nothing is baked, and nothing is drawn before the picture. `scene_relit.toml` in the same "
     "folder has the cast of an ear, with a baked response to light, under lamps that may move.",
-    "leaves": "Sheets that are lit from both sides. The thickness technique of this example counts a leaf's veins and "
-    "all leaves between it and the sun, so that leaves show the shadows of others.",
+    "leaves": "Sheets that are lit from both sides. The thickness technique of this example counts a leaf's veins, the "
+    "net between them and all leaves between it and the sun, so that leaves show the shadows of others.",
     "jelly": "The length towards the light in place of the depth of the nearest face, which makes "
     "[the X](stability.md#thinness-from-a-distance-field-cheap-sss-xt95) of `jelly_cubes` below. The light that comes "
     "through the cubes falls on the plate; the shell's shadow map keeps the other light from there.",
@@ -59,8 +59,8 @@ CAPTIONS = {
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
     "through the wax in a 3-D distance texture, which is computed from the geometry: the ears glow, the body stays "
     "dark. `scene_mesh.toml` in the same folder draws Blender's monkey, if you have its mesh.",
-    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the sun is "
-    "behind them, light moves in the veins below; snow lies at the foot, and the edges and some holes melt.",
+    "ice": "Ice after Zucconi's fast subsurface scattering, from near. Voronoi facets give thickness and normals, the "
+    "sun is behind them, light moves in the veins below; snow lies at the foot, and the edges and some holes melt.",
     "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction determines where the inlay appears: "
     "flat below the flat top, distorted below the round edges.",
     "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: refracted parallax places the leaves "
@@ -83,18 +83,18 @@ ALTERNATIVE_TEXTS = {
     "before and after": "An ear and a candle: an engine's default, sssgen, and path traced",
     "candle": "A burning candle in the dark: its upper half glows, its foot is dark",
     "skin_ear": "An ear beside a dark cheek, glowing red in the light behind it",
-    "leaves": "A twig with five bright green leaves against the light, with dark veins",
-    "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
+    "leaves": "A twig with five bright green leaves against the light in a wood, with dark and fine veins",
+    "jelly": "Two cubes of red jelly with bright edges on a white plate, with red light in their shadows",
     "ice_body": "A block of clear dark blue ice with bright cracks inside and bright lower edges",
     "soap": "A bar of amber soap with an engraved leaf, on a slab of slate with the light behind it",
     "milk_glass": "A table lamp with a glowing dome of white glass on a brass stem",
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
-    "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
+    "ice": "A sheet of cracked blue ice with the sun behind its facets, and snow at its foot",
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
-    "jade_ring": "A thick ring of green jade with bright edges towards the light behind it",
+    "jade_ring": "A thick ring of deep green jade with bright edges towards the light behind it",
     "marble_idol": "A smooth marble bust with folded arms, bright on the right where the sun is behind it",
 }
 """The alternative text of each picture."""
@@ -224,7 +224,7 @@ def _cost(name: str) -> str:
 def _sum(entries: list[dict[str, Any]]) -> str:
     counts = {kind: sum(entry["cost"][kind] for entry in entries) for kind in entries[0]["cost"]}
     words = {"operations": "operation", "transcendentals": "transcendental", "fetches": "texture fetch"}
-    words |= {"distance_evaluations": "distance evaluation"}
+    words |= {"volume_fetches": "volume fetch", "distance_evaluations": "distance evaluation"}
     return ", ".join(_counted(count, words[kind]) for kind, count in counts.items() if count)
 
 

@@ -16,7 +16,7 @@ from sssgen.scene.scene import Light
 
 LOOP = "light_around.webp"
 SCENE = "jelly"
-FRAMES, SIZE, SECONDS = 20, (256, 192), 2.4
+FRAMES, SIZE, SECONDS = 20, (640, 480), 2.4
 
 
 def drawn() -> bytes:

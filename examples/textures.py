@@ -227,7 +227,7 @@ def resin_inlay() -> dict[str, Any]:
 
 
 def surroundings() -> dict[str, Any]:
-    """What scenes mirror: a dark studio with lamps behind cloth, and a bright room with windows."""
+    """What scenes mirror: a dark studio with lamps behind cloth, and a bright room with windows; and a wood to show."""
     way = directions()
     # the floor is brown, the ceiling is lighter and blue
     studio = blend(color("#28231f"), color("#46505c"), smooth(-0.5, 0.9, way[..., 1]))
@@ -242,13 +242,32 @@ def surroundings() -> dict[str, Any]:
         ((0.55, 0.3, -0.78), 0.75, 0.45, color("#fffaf2")),
         ((0.5, 0.75, 0.45), 0.5, 0.3, color("#f4f8ff")),
     )
-    return {"studio": with_lamps(studio, way, lamps), "room": with_lamps(room, way, windows)}
+    return {
+        "studio": with_lamps(studio, way, lamps),
+        "room": with_lamps(room, way, windows),
+        "wood": wood(directions(128)),
+    }
 
 
-def directions() -> Any:
+def wood(way: Any) -> Any:
+    """A wood in summer: the sky shines through gaps between the leaves, and trunks stand before it."""
+    random = np.random.default_rng(3)
+    picture = blend(color("#161c0c"), color("#55702c"), smooth(-0.5, 0.55, way[..., 1]))
+    azimuth = np.arctan2(way[..., 2], way[..., 0])
+    for trunk in random.uniform(-np.pi, np.pi, 26):
+        away = np.abs(np.angle(np.exp(1j * (azimuth - trunk))))
+        picture = blend(picture, color("#12120b"), 0.75 * smooth(0.09, 0.0, away) * smooth(0.9, 0.2, way[..., 1]))
+    for _ in range(170):
+        facing = random.normal(size=3) * [1.0, 0.35, 1.0] + [0.0, 0.3, 0.0]
+        gap = smooth(1.0 - 0.012 * random.uniform(0.2, 1.0), 1.0, way @ (facing / np.linalg.norm(facing)))
+        picture = blend(picture, color("#c8dc8c" if random.random() < 0.6 else "#f2f6dc"), 0.6 * gap)
+    return picture
+
+
+def directions(rows: int = 64) -> Any:
     """The unit direction of each texel of a picture of all directions: up at the top, +x in the middle."""
-    v, u = np.mgrid[0:64, 0:128]
-    polar, azimuth = np.pi * (1.0 - (v + 0.5) / 64), 2.0 * np.pi * ((u + 0.5) / 128 - 0.5)
+    v, u = np.mgrid[0:rows, 0 : 2 * rows] + 0.5
+    polar, azimuth = np.pi * (1.0 - v / rows), np.pi * (u / rows - 1.0)
     return np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
 
 

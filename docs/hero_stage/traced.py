@@ -21,6 +21,8 @@ _PASS = 8
 """The paths of a pixel in one render, which the memory limits."""
 _DEEPEST = 160
 """The events of a path; what is left then is less than the noise."""
+_STEPS = 16
+"""Of the colours of what shines."""
 _BRIGHTEST = 60.0
 """The largest radiance of a pixel in one render: brighter ones are the noise of rare paths."""
 
@@ -68,7 +70,8 @@ def _scene(mi: Any, prepared: Prepared, size: tuple[int, int]) -> dict[str, Any]
             scene[f"body{number}_{place}"] = _body(mi, prepared, body, to_world)
     for number, prop in enumerate(hero.props):
         for place, to_world in enumerate(_matrices(prop.places)):
-            scene[f"prop{number}_{place}"] = _prop(mi, prepared, prop, to_world)
+            parts = (_shining if max(prop.emission) > 0.0 else _opaque)(mi, prepared, prop, to_world)
+            scene |= {f"prop{number}_{place}_{part}": mesh for part, mesh in enumerate(parts)}
     return scene
 
 
@@ -169,15 +172,27 @@ def _sheet(mi: Any, prepared: Prepared, body: Body, to_world: np.ndarray) -> Any
     return _mesh(mi, prepared.model.meshes[body.mesh], to_world, thin)
 
 
-def _prop(mi: Any, prepared: Prepared, prop: Prop, to_world: np.ndarray) -> Any:
+def _shining(mi: Any, prepared: Prepared, prop: Prop, to_world: np.ndarray) -> list[Any]:
+    parts = []
+    for color, piece in pieces_of_one_color(prepared.model.meshes[prop.mesh]):
+        emitter = {"type": "area", "radiance": {"type": "rgb", "value": (color * prop.emission).tolist()}}
+        parts.append(_mesh(mi, piece, to_world, {"type": "diffuse", "reflectance": 0.0}, emitter=emitter))
+    return parts
+
+
+def pieces_of_one_color(mesh: Mesh) -> list[tuple[np.ndarray, Mesh]]:
+    """A mesh as colours and meshes: Mitsuba ends with a segmentation fault for an area emitter with vertex colours."""
+    colors = mesh.colors[:, :3] if len(mesh.colors) else np.ones_like(mesh.vertices)
+    steps, part_of = np.unique(np.rint(_STEPS * colors[mesh.faces].mean(axis=1)), axis=0, return_inverse=True)
+    pieces = [dataclasses.replace(mesh, faces=mesh.faces[part_of.ravel() == part]) for part in range(len(steps))]
+    return [
+        (step / _STEPS, dataclasses.replace(piece, colors=np.ones((0, 4))))
+        for step, piece in zip(steps, pieces, strict=True)
+    ]
+
+
+def _opaque(mi: Any, prepared: Prepared, prop: Prop, to_world: np.ndarray) -> list[Any]:
     mesh = prepared.model.meshes[prop.mesh]
-    if max(prop.emission) > 0.0:
-        radiance: dict[str, Any] = {"type": "rgb", "value": list(prop.emission)}
-        if len(mesh.colors):
-            mesh = dataclasses.replace(mesh, colors=mesh.colors * [*prop.emission, 1.0])
-            radiance = {"type": "mesh_attribute", "name": "vertex_tint"}
-        emitter = {"type": "area", "radiance": radiance}
-        return _mesh(mi, mesh, to_world, {"type": "diffuse", "reflectance": 0.0}, emitter=emitter)
     color: dict[str, Any] = {"type": "rgb", "value": list(prop.color)}
     if prop.picture:
         picture = np.ascontiguousarray(prepared.model.pictures[prop.picture] * prop.color, np.float32)
@@ -186,4 +201,4 @@ def _prop(mi: Any, prepared: Prepared, prop: Prop, to_world: np.ndarray) -> Any:
         mesh = dataclasses.replace(mesh, colors=mesh.colors * [*prop.color, 1.0])
         color = {"type": "mesh_attribute", "name": "vertex_tint"}
     surface = {"type": "principled", "base_color": color, "roughness": prop.roughness, "metallic": prop.metalness}
-    return _mesh(mi, mesh, to_world, {"type": "twosided", "surface": surface})
+    return [_mesh(mi, mesh, to_world, {"type": "twosided", "surface": surface})]

@@ -158,6 +158,10 @@ def test_several_materials(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert read("out/body.glb").vertices[:, 0].max() == pytest.approx(9.5)
     assert not Path("out/textures").exists()
     report = used("skin_fair", "two.gltf", "--material", "Skin", capsys=capsys)
+    assert not report["warnings"] and "rest.glb" in Path("out/main.js").read_text(encoding="utf-8")
+    rest = read("out/rest.glb")
+    assert rest.vertices[:, 0].min() > 2.0 and rest.vertices[:, 0].max() == pytest.approx(9.5)
+    report = used("skin_fair", "two.gltf", "--material", "Skin", "--target", "gltf", capsys=capsys)
     assert "left out are the parts with other materials: Eyes" in report["warnings"]
     assert read("out/body.glb").vertices[:, 0].max() == pytest.approx(2.0)
     assert Path("out/textures/normal.png").is_file()

@@ -47,7 +47,7 @@ def add_options(parser: ArgumentParser) -> None:
         "--material",
         metavar="NAME",
         default="",
-        help="of a glTF file: the part with this material alone, and its pictures",
+        help="of a glTF file: the part with this material, and its pictures; other parts keep their own materials",
     )
     add(
         "--keep-color", action=BooleanOptionalAction, default=None,
@@ -134,7 +134,7 @@ def _warnings(request: Request) -> list[str]:
         warnings.append(
             f"the file has several materials, whose pictures are left out: choose one with --material ({names})"
         )
-    elif part is not None and part.others:
+    elif part is not None and part.others and not request.rest:
         warnings.append(f"left out are the parts with other materials: {', '.join(part.others)}")
     return warnings
 
