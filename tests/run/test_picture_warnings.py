@@ -10,7 +10,7 @@ import pytest
 
 from sssgen.material.baked import BakeFile
 from sssgen.run.render.baked_body import check_body
-from sssgen.run.render.picture_warnings import warnings_of
+from sssgen.run.render.picture_warnings import darkness_warnings, warnings_of
 from sssgen.scene import scene_loading
 from sssgen.scene.body_identity import measures
 from sssgen.scene.geometry import Ball, Mesh
@@ -72,6 +72,16 @@ def test_a_camera_in_a_mesh(scene: Callable[[str], Scene]) -> None:
     mesh = scene(SCENE.replace('kind = "ball"', 'kind = "mesh"\nfile = "body.obj"'))
     assert messages(mesh, front=False) == [("the camera is inside the body", 6)]
     assert messages(mesh) == []
+
+
+def test_a_black_picture(scene: Callable[[str], Scene]) -> None:
+    black, shown = np.zeros((2, 2, 3)), np.array([[True, False], [False, False]])
+    (warning,) = darkness_warnings(scene(SCENE), black, shown)
+    assert "no light reaches what the camera sees" in warning.message and warning.span.line == 7
+    (warning,) = darkness_warnings(scene(SCENE[: SCENE.index("[[light]]")]), black, shown)
+    assert warning.message == "the picture is black: the scene has no light"
+    assert darkness_warnings(scene(SCENE), black, ~shown & False) == []
+    assert darkness_warnings(scene(SCENE), black + 0.1, shown) == []
 
 
 def test_a_black_light(scene: Callable[[str], Scene]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -86,18 +86,23 @@ def check_lights(sidecar: BakeFile, geometry: Geometry, lights: Iterable[Light],
     """
     if sidecar.kind != "fluence":
         return
-    to_object = geometry.to_object()
     lights = list(lights)
+    for number in lights_inside(geometry, lights):
+        raise failure(
+            f"'{name}' is baked for lights from afar, and light {number} is inside the body",
+            "move the light out, or use a technique that needs no baked light",
+        )
+    _check_direction(sidecar, geometry.to_object()[:3, :3], lights, name)
+
+
+def lights_inside(geometry: Geometry, lights: Iterable[Light]) -> Iterator[int]:
+    """The numbers, from 1, of the lights that are inside a body."""
+    to_object = geometry.to_object()
     for number, light in enumerate(lights, 1):
-        if light.position is None:
-            continue
-        place = (to_object[:3, :3] @ np.array(light.position) + to_object[:3, 3])[None]
-        if geometry.distance(place)[0] <= 0.0:
-            raise failure(
-                f"'{name}' is baked for lights from afar, and light {number} is inside the body",
-                "move the light out, or use a technique that needs no baked light",
-            )
-    _check_direction(sidecar, to_object[:3, :3], lights, name)
+        if light.position is not None:
+            place = (to_object[:3, :3] @ np.array(light.position) + to_object[:3, 3])[None]
+            if geometry.distance(place)[0] <= 0.0:
+                yield number
 
 
 def _check_direction(sidecar: BakeFile, to_object: npt.NDArray[np.float64], lights: list[Light], name: str) -> None:
