@@ -29,15 +29,16 @@ scene path traced: `make heroes`, or `python docs/heroes.py NAME` for one of the
 
 Each picture is the mean of many frames, in each of which the eye is at another point of the lens, the pixel is
 shifted, and the lamps are at another point of their balls: depth of field, anti-aliasing and soft shadows. Opaque
-things are lit by directions of the surroundings that are drawn at random, with shadow maps; bodies by the lamps and by
-a cube map of what is around them. Both pictures of a pair are developed alike: exposure, the glare of a lens, and a
-film curve, which is a technique of sssgen that runs as NumPy.
+things are lit by directions of the surroundings that are drawn at random, with shadow maps; bodies by the lamps and
+by a cube map of what is around them. Clear bodies show a picture of the scene without bodies, and where a hero says
+which share of the light its bodies pass, their shadows have its colour. Both pictures of a pair are developed alike:
+exposure, the glare of a lens, and a film curve, which is a technique of sssgen that runs as NumPy.
 
-What the engine lacks beside the path traced picture: bodies take no light from each other's insides, what a body sends
-to the ground is a lamp inside it without a shadow, and reflections show the surroundings alone. The path tracer's
-samples are few, and its picture is denoised (Open Image Denoise). The error is FLIP between both developed pictures,
-0 where they are the same. Skin and marble are not path traced: light is scattered there too often for the samples, and
-the occlusion is a part of their colours.
+What the engine lacks beside the path traced picture: bodies take no light from each other's insides and do not show
+each other, what a body sends to the ground is a lamp inside it without a shadow, light is not focused on the ground,
+and reflections show the surroundings alone. The path tracer's samples are few, and its picture is denoised (Open
+Image Denoise). The error is FLIP between both developed pictures, 0 where they are the same. Skin and marble are not
+path traced: light is scattered there too often for the samples, and the occlusion is a part of their colours.
 
 Models are our own, procedural, in `docs/heroes/NAME/model.py`. The head of the skin and of the marble is that of
 [MakeHuman](https://static.makehumancommunity.org/) (base mesh and targets, and Mika Suominen's Face Units: CC0-1.0),

@@ -118,6 +118,10 @@ class Hero:
     """The same of the meshes for bakes; 0: those of the picture"""
     traced: bool
     """Whether it is path traced, too"""
+    shade: Vector
+    """The share of the light that comes through bodies into their shadows, in the engine"""
+    photons: int
+    """Of the bakes, for each direction and channel; the products of a voxel average over directions"""
 
     @property
     def folder(self) -> Path:
@@ -136,5 +140,6 @@ def load(name: str) -> Hero:
         name, data["title"], data["doc"], Camera(**data["camera"]), Surroundings(**data["surroundings"]),
         tuple(Body(**body) for body in data["body"]), tuple(Prop(**prop) for prop in data.get("prop", ())),
         tuple(Lamp(**lamp) for lamp in data.get("lamp", ())), data.get("cells", 150),
-        data.get("bake_cells", 50), data.get("traced", True),
+        data.get("bake_cells", 50), data.get("traced", True), tuple(data.get("shade", (0.0, 0.0, 0.0))),
+        data.get("photons", 800),
     )  # fmt: skip

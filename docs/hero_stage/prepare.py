@@ -21,9 +21,7 @@ from sssgen.run.web_library import library
 
 PAGE = Path(__file__).parent
 RANK = 16
-PHOTONS = 800
-"""Of a bake: few, for the sake of time; the 16 products of a voxel average over directions."""
-PROCESSES = 3
+PROCESSES = 2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -58,7 +56,7 @@ def prepare(hero: Hero, cells: int | None = None) -> Prepared:
     sky = _sky(hero)
     texels = np.dstack([sky, np.ones_like(sky[..., :1])])[::-1]
     (folder / "sky.bin").write_bytes(np.ascontiguousarray(texels, np.float32).tobytes())
-    responses = [bake(body, model.coarse[body.mesh], folder) for body in hero.bodies]
+    responses = [bake(hero, body, model.coarse[body.mesh], folder) for body in hero.bodies]
     materials = sorted({body.material for body in hero.bodies})
     for material in materials:
         command = ["emit", str(hero.folder / material), "--target", "threejs", "-o", str(folder), "--json"]
@@ -92,9 +90,12 @@ def prepare(hero: Hero, cells: int | None = None) -> Prepared:
     return Prepared(hero, folder, model, sky)
 
 
-def _bake_name(body: Body, coarse: Mesh) -> str:
-    """The name of the bake of a body: of its mesh and of its medium."""
-    key = json.dumps([dict(body.medium), body.voxels], sort_keys=True).encode() + np.round(coarse.vertices, 4).tobytes()
+def bake_name(hero: Hero, body: Body, coarse: Mesh) -> str:
+    """The name of the bake of a body: of its mesh, its medium and the photons."""
+    key = (
+        json.dumps([dict(body.medium), body.voxels, hero.photons], sort_keys=True).encode()
+        + np.round(coarse.vertices, 4).tobytes()
+    )
     return f"{body.mesh}_{hashlib.sha256(key).hexdigest()[:8]}"
 
 
@@ -139,12 +140,12 @@ def _sky(hero: Hero) -> np.ndarray:
     return np.roll(picture, round(around.turn / 360.0 * picture.shape[1]), axis=1)
 
 
-def bake(body: Body, coarse: Mesh, folder: Path) -> str | None:
-    """The file of the response of a body to all lights, made where it is missing; None for a body without a medium or
+def bake(hero: Hero, body: Body, coarse: Mesh, folder: Path) -> str | None:
+    """The file of the response of a body to all lights, made where it is missing; None where nothing scatters, or without
     voxels."""
-    if "absorption" not in body.medium or not body.voxels:
+    if not any(body.medium.get("scattering", ())) or not body.voxels:
         return None
-    output = folder / f"{_bake_name(body, coarse)}.bin"
+    output = folder / f"{bake_name(hero, body, coarse)}.bin"
     if output.is_file():
         return output.name
     keys = "".join(f"{key} = {toml_value(value)}\n" for key, value in body.medium.items())
@@ -154,7 +155,7 @@ def bake(body: Body, coarse: Mesh, folder: Path) -> str | None:
         f"[[light]]\ndirection = [0.0, 1.0, 0.0]\n[medium]\n{keys}", "utf-8"
     )  # fmt: skip
     command = ["bake", "fluence", str(scene), "--relit", str(RANK), "--voxels", str(body.voxels)]
-    command += ["--photons", str(PHOTONS), "--processes", str(PROCESSES), "-o", str(output)]
+    command += ["--photons", str(hero.photons), "--processes", str(PROCESSES), "-o", str(output)]
     if sssgen(command):
         raise SystemExit(f"{body.mesh} was not baked")
     return output.name

@@ -85,6 +85,9 @@ class Stage {
       vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
       fragmentShader: 'uniform sampler2D before, added; void main() { ivec2 at = ivec2(gl_FragCoord.xy); gl_FragColor = vec4(texelFetch(before, at, 0).rgb + clamp(texelFetch(added, at, 0).rgb, 0.0, 300.0), 1.0); }',
     });
+    // the scene without bodies, which clear bodies show
+    const side = 2 ** Math.floor(Math.log2(Math.min(Math.max(width, height), 2048)));
+    this.behind = new THREE.WebGLRenderTarget(side, side, { type: THREE.HalfFloatType, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter });
     this.sheet = new THREE.Scene().add(new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.adding));
     this.eye = new THREE.Camera();
   }
@@ -129,6 +132,8 @@ class Stage {
     const { createMaterial } = await import(`./${material.replace('.toml', '.js')}`);
     const made = createMaterial();
     if (response) made.innerLight = { data: await bytesOf(response), facts: await (await fetch(`${response}.json`)).json() };
+    // what is not scattered has the medium's extinction
+    if ('seenThroughBodyExtinction' in made) made.setValues({ seenThroughBodyExtinction: medium.absorption.map((part, at) => part + medium.scattering[at]), seenThroughBodyIor: medium.ior });
     made.setValues(parameters);
     for (const [name, picture] of Object.entries(pictures)) made[name] = await pictureOf(picture);
     made.shadowSide = THREE.FrontSide;
@@ -183,6 +188,20 @@ class Stage {
       scene.add(light.target);
       return light;
     });
+  }
+
+  /** Whether light comes through bodies into their shadows. */
+  get #shades() {
+    return Math.max(...this.hero.shade) > 0;
+  }
+
+  /** The strength of each lamp, as a factor, for props or for bodies. */
+  #shine(share) {
+    for (const [number, lamp] of this.lamps.entries()) {
+      const { intensity } = this.hero.lamps[number], values = intensity.map((part, at) => part * share[at]);
+      lamp.intensity = Math.max(...values, 1e-9);
+      lamp.color.setRGB(...values.map((part) => part / lamp.intensity));
+    }
   }
 
   /** What the light that leaves bodies does to props. */
@@ -251,14 +270,15 @@ class Stage {
   /** Adds a frame to the picture. */
   frame() {
     const { renderer, camera, hero } = this, [width, height] = this.size, index = this.count;
-    const [a, b, c, d, e, f, g] = spread(index, 7);
+    const paired = this.#shades ? index >> 1 : index; // frames with and without a shadow have the same light
+    const [a, b, c, d] = spread(index, 4), [e, f, g] = spread(paired, 3);
     const [x, y] = onDisc(a, b).map((part) => part * hero.camera.aperture);
     const scale = height / 2 / Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) / this.focus;
     camera.setViewOffset(width, height, -x * scale + c - 0.5, y * scale + d - 0.5, width, height);
     camera.position.copy(this.place).add(new THREE.Vector3(x, y, 0).applyQuaternion(camera.quaternion));
     camera.updateMatrixWorld();
     for (const [number, lamp] of this.lamps.entries()) {
-      const [s, t] = spread(index + 1000 * number, 2), u = 2 * s - 1, ring = Math.sqrt(1 - u * u), turn = 2 * Math.PI * t;
+      const [s, t] = spread(paired + 1000 * number, 2), u = 2 * s - 1, ring = Math.sqrt(1 - u * u), turn = 2 * Math.PI * t;
       const { place, radius } = lamp.userData, size = radius * Math.cbrt((e + 0.618 * number) % 1);
       lamp.position.copy(place).add(new THREE.Vector3(ring * Math.cos(turn), u, ring * Math.sin(turn)).multiplyScalar(size));
     }
@@ -282,9 +302,35 @@ class Stage {
     scene.backgroundIntensity = hero.surroundings.shown;
     scene.environment = null;
     for (const light of [...this.skies, ...this.glows]) light.visible = true;
+    // light that comes through bodies: in each second frame they cast no shadow
+    const shaded = this.count % 2 > 0, share = hero.shade.map((part) => (shaded ? 2 - 2 * part : 2 * part));
+    const shades = this.#shades;
+    if (shades) {
+      this.#shine(share);
+      for (const light of this.skies) light.color.setRGB(...['r', 'g', 'b'].map((part, at) => light.color[part] * share[at]));
+    }
+    for (const object of this.bodies) object.castShadow = shaded || !shades;
+    this.#behind();
     for (const object of this.bodies) object.material = BLACK;
     this.#add();
     for (const object of this.bodies) object.material = object.userData.material;
+    if (shades) this.#shine([1, 1, 1]);
+  }
+
+  /** The picture of what is behind clear bodies. */
+  #behind() {
+    const clear = this.bodies.filter(({ userData }) => 'sceneBehindMap' in userData.material);
+    if (!clear.length) return;
+    const { renderer, camera, behind } = this, half = new THREE.Matrix4().set(0.5, 0, 0, 0.5, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 1);
+    for (const object of this.bodies) object.material = UNSEEN;
+    renderer.setRenderTarget(behind);
+    renderer.clear();
+    renderer.render(this.scene, camera);
+    const values = {
+      sceneBehindMap: behind.texture, sceneBehindLevels: Math.log2(behind.width),
+      sceneBehindMatrix: half.multiply(camera.projectionMatrix).multiply(camera.matrixWorldInverse),
+    };
+    for (const { userData } of clear) Object.assign(userData.material, values);
   }
 
   /** The bodies under lamps and surroundings; props are black. */

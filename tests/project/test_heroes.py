@@ -47,6 +47,20 @@ def test_heroes_name_what_they_have(stage: Any) -> None:
             assert "passed" in body.medium or len(body.medium["absorption"]) == 3, name
 
 
+def test_a_hero_has_photons_of_its_own_and_bakes_only_what_scatters(stage: Any, tmp_path: Path) -> None:
+    import dataclasses
+
+    from hero_stage.mesh import Mesh
+    from hero_stage.prepare import bake, bake_name
+
+    bears, honey = stage.hero.load("gummy_bears"), stage.hero.load("honey")
+    corner = Mesh(np.eye(3), np.array([[0, 1, 2]]), np.eye(3))
+    names = {bake_name(dataclasses.replace(bears, photons=count), bears.bodies[0], corner) for count in (800, 1200)}
+    assert len(names) == 2
+    assert bake(honey, honey.bodies[0], corner, tmp_path) is None
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_meshed_ball_is_a_ball(stage: Any) -> None:
     pytest.importorskip("skimage")
     mesh = stage.shapes.meshed(lambda p: stage.shapes.sphere(p, (0.1, 0, 0), 0.7), (-1, -1, -1), (1, 1, 1), 24)
