@@ -141,8 +141,8 @@ def _sky(hero: Hero) -> np.ndarray:
 
 
 def bake(hero: Hero, body: Body, coarse: Mesh, folder: Path) -> str | None:
-    """The file of the response of a body to all lights, made where it is missing; None where nothing scatters, or without
-    voxels."""
+    """The file of the response of a body to all lights, made where it is missing; None where nothing scatters, or
+    without voxels."""
     if not any(body.medium.get("scattering", ())) or not body.voxels:
         return None
     output = folder / f"{bake_name(hero, body, coarse)}.bin"
