@@ -11,6 +11,7 @@ from PIL import Image
 
 from hero_stage.assets import BUILD, PICTURES
 from hero_stage.hero import Hero, load
+from hero_stage.human import PACKAGE
 from sssgen.scene.pictures.picture_difference import compare
 
 DOCS = Path(__file__).parents[1]
@@ -36,10 +37,13 @@ exposure, the glare of a lens, and a film curve, which is a technique of sssgen 
 What the engine lacks beside the path traced picture: bodies take no light from each other's insides and do not show
 each other, what a body sends to the ground is a lamp inside it without a shadow, light is not focused on the ground,
 and reflections show the surroundings alone. The path tracer's samples are few, and its picture is denoised (Open
-Image Denoise). The error is FLIP between both developed pictures, 0 where they are the same.
+Image Denoise). The error is FLIP between both developed pictures, 0 where they are the same. Skin and marble are not
+path traced: light is scattered there too often for the samples, and the occlusion is a part of their colours.
 
-Models are our own, procedural, in `docs/heroes/NAME/model.py`. The surroundings are pictures of Poly Haven from the
-npm package `{pictures}` (CC0-1.0), which is downloaded while drawing.
+Models are our own, procedural, in `docs/heroes/NAME/model.py`. The head of the skin and of the marble is that of
+[MakeHuman](https://static.makehumancommunity.org/) (base mesh and targets, and Mika Suominen's Face Units: CC0-1.0),
+from the Python package `{human}`; subdivision, hair, pores, veins and colours are our own. The surroundings are
+pictures of Poly Haven from the npm package `{pictures}` (CC0-1.0). Both packages are downloaded while drawing.
 """
 
 
@@ -78,7 +82,7 @@ def publish_loop(hero: Hero, pictures: Iterable[np.ndarray]) -> None:
 
 def write_document() -> None:
     """docs/heroes.md, of all heroes whose pictures are in the documents."""
-    parts = [_HEAD.format(pictures=PICTURES)]
+    parts = [_HEAD.format(pictures=PICTURES, human=PACKAGE)]
     for file in sorted(PICTURES_FOLDER.glob("*.json")):
         hero, facts = load(file.stem), json.loads(file.read_text("utf-8"))
         parts.append(f"## {hero.title}\n\n{hero.doc}\n\n![{hero.title}](heroes/{hero.name}.webp)\n")

@@ -41,7 +41,9 @@ class Lamp:
     """Radiant intensity: the irradiance of a surface at a distance of 1"""
     radius: float
     target: Vector | None = None
-    """In the engine, the middle of the cone of 120 degrees that it lights; None: everything"""
+    """In the engine, the middle of the cone that it lights; None: everything"""
+    cone: float = 120.0
+    """How wide that cone is: a narrow one has a finer shadow"""
     shown: bool = True
     """Whether it is a body of light in the path traced picture; otherwise a prop there emits the light"""
 
@@ -78,6 +80,7 @@ class Body:
     inclusions: str | None = None
     """A volume of the model: factors of the light that is scattered inside"""
     voxels: int = 24
+    """Of its bake, along the longest side; 0: the material needs none"""
     glow: Vector = (0.0, 0.0, 0.0)
     """The radiant intensity of what leaves the body at the height `glow_height`, which lights props in the engine"""
     glow_height: float = 0.4
@@ -112,7 +115,7 @@ class Hero:
     cells: int
     """Of the models, along the longest side of a mesh"""
     bake_cells: int
-    """The same of the meshes for bakes"""
+    """The same of the meshes for bakes; 0: those of the picture"""
     traced: bool
     """Whether it is path traced, too"""
     shade: Vector

@@ -64,12 +64,13 @@ class Mesh:
         import trimesh
 
         body = trimesh.Trimesh(self.vertices, self.faces, vertex_normals=self.normals, process=False)
-        if len(self.colors):
-            body.visual = trimesh.visual.ColorVisuals(
-                body, vertex_colors=np.rint(255.0 * np.clip(self.colors, 0, 1)).astype(np.uint8)
-            )
+        colors = np.rint(255.0 * np.clip(self.colors, 0, 1)).astype(np.uint8)
         if len(self.uv):
             body.visual = trimesh.visual.TextureVisuals(uv=self.uv)
+            if len(colors):
+                body.visual.vertex_attributes["color"] = colors
+        elif len(colors):
+            body.visual = trimesh.visual.ColorVisuals(body, vertex_colors=colors)
         path.write_bytes(trimesh.exchange.gltf.export_glb(body, include_normals=True))
 
 
@@ -79,3 +80,9 @@ def merged(*meshes: Mesh) -> Mesh:
     faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
     parts = ("vertices", "normals", "colors", "uv")
     return Mesh(faces=faces, **{name: np.concatenate([getattr(mesh, name) for mesh in meshes]) for name in parts})
+
+
+def mirrored(mesh: Mesh) -> Mesh:
+    """On the other side of the plane x = 0."""
+    flip = np.array([-1.0, 1.0, 1.0])
+    return Mesh(mesh.vertices * flip, mesh.faces[:, ::-1], mesh.normals * flip)

@@ -110,8 +110,9 @@ def modelled(hero: Hero, folder: Path, cells: int) -> Model:
             return model
     module = runpy.run_path(str(source))
     meshes = module["meshes"](cells)
+    coarse = module["meshes"](hero.bake_cells) if hero.bake_cells else meshes
     model = Model(
-        meshes, module["meshes"](hero.bake_cells), module["volumes"](meshes) if "volumes" in module else {},
+        meshes, coarse, module["volumes"](meshes) if "volumes" in module else {},
         module["pictures"]() if "pictures" in module else {},
     )  # fmt: skip
     for name, mesh in meshes.items():
@@ -140,8 +141,9 @@ def _sky(hero: Hero) -> np.ndarray:
 
 
 def bake(hero: Hero, body: Body, coarse: Mesh, folder: Path) -> str | None:
-    """The file of the response of a body to all lights, made where it is missing; None where nothing scatters."""
-    if not any(body.medium.get("scattering", ())):
+    """The file of the response of a body to all lights, made where it is missing; None where nothing scatters, or
+    without voxels."""
+    if not any(body.medium.get("scattering", ())) or not body.voxels:
         return None
     output = folder / f"{bake_name(hero, body, coarse)}.bin"
     if output.is_file():

@@ -164,9 +164,9 @@ class Stage {
 
   #lights() {
     const { hero, scene, ball } = this;
-    this.lamps = hero.lamps.map(({ position, intensity, radius, target }) => {
+    this.lamps = hero.lamps.map(({ position, intensity, radius, target, cone }) => {
       const strength = Math.max(...intensity);
-      const light = target ? new THREE.SpotLight(0xffffff, strength, 0, Math.PI / 3, 0.2) : new THREE.PointLight(0xffffff, strength);
+      const light = target ? new THREE.SpotLight(0xffffff, strength, 0, THREE.MathUtils.degToRad(cone / 2), 0.2) : new THREE.PointLight(0xffffff, strength);
       light.color.setRGB(...intensity.map((part) => part / strength));
       light.position.copy(vector(position));
       if (target) {

@@ -272,20 +272,21 @@ def test_other_files_are_not_overwritten() -> None:
     assert Path("map.obj").read_text(encoding="utf-8") == "mine" and Path("map.png.obj").is_file()
 
 
-def test_inconsistent_winding_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
+def test_triangles_that_face_the_other_way_are_turned(capsys: pytest.CaptureFixture[str]) -> None:
     box = meshes.box()
     faces = box.faces.copy()
     faces[::2] = faces[::2, ::-1]
     write(Path("mixed.obj"), box._replace(faces=faces, uv=None))
-    for what, name in (("sdf", "m.npy"), ("thickness", "m.png")):
-        if (
-            main(["bake", what, "mixed.obj", "-o", name, *(["--thin", "0.1"] if what == "sdf" else ["--size", "16"])])
-            == 0
-        ):
-            assert facts(name)["mesh"]["mixed_sides"]
-            assert "face opposite directions" in capsys.readouterr().out
-    bake("sdf", "box.obj", "-o", "right.npy", "--resolution", "12")
-    assert not facts("right.npy")["mesh"]["mixed_sides"]
+    write(Path("plain.obj"), box._replace(uv=None))
+    for what, option in (("sdf", "--resolution"), ("thickness", "--size")):
+        for name in ("mixed", "plain"):
+            bake(what, f"{name}.obj", "-o", f"{what}_{name}.npy", option, "16")
+            assert ("face the other way than their neighbours" in capsys.readouterr().out) == (name == "mixed")
+        turned, plain = facts(f"{what}_mixed.npy"), facts(f"{what}_plain.npy")
+        assert turned["mesh"]["turned"] == len(faces) // 2 and not turned["mesh"]["mixed_sides"]
+        assert plain["mesh"]["turned"] == 0
+        part = "inside" if what == "sdf" else "mean"
+        assert turned[part] == pytest.approx(plain[part], rel=0.01)
 
 
 def test_a_light_that_hits_nothing_is_reported(capsys: pytest.CaptureFixture[str]) -> None:

@@ -98,7 +98,7 @@ def test_clear_and_thin_bodies_take_the_color_on_request(head: str, capsys: pyte
 
 
 def test_baked_light_has_no_picture(head: str, capsys: pytest.CaptureFixture[str], monkeypatch: Any) -> None:
-    monkeypatch.setattr("sssgen.cli.use._bake", lambda folder, bar: [])
+    monkeypatch.setattr("sssgen.presets.project_files._baked_light", lambda *_: {})
     report = used("skin_fair", head, "--quality", "best", capsys=capsys)
     assert outcomes(report)["baseColorTexture"] == "left out"
     assert outcomes(report)["normalTexture"] == "mapped"
@@ -158,6 +158,10 @@ def test_several_materials(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert read("out/body.glb").vertices[:, 0].max() == pytest.approx(9.5)
     assert not Path("out/textures").exists()
     report = used("skin_fair", "two.gltf", "--material", "Skin", capsys=capsys)
+    assert not report["warnings"] and "rest.glb" in Path("out/main.js").read_text(encoding="utf-8")
+    rest = read("out/rest.glb")
+    assert rest.vertices[:, 0].min() > 2.0 and rest.vertices[:, 0].max() == pytest.approx(9.5)
+    report = used("skin_fair", "two.gltf", "--material", "Skin", "--target", "gltf", capsys=capsys)
     assert "left out are the parts with other materials: Eyes" in report["warnings"]
     assert read("out/body.glb").vertices[:, 0].max() == pytest.approx(2.0)
     assert Path("out/textures/normal.png").is_file()

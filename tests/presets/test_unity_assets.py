@@ -144,12 +144,8 @@ def test_the_menu_makes_a_scene(assets: Path, symbols: tuple[str, ...]) -> None:
 
 
 def test_baked_light_comes_with_its_component(assets: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def bake(folder: str, bar: object) -> list[object]:
-        Path(folder, "light.bin").write_bytes(b"bake")
-        Path(folder, "light.bin.json").write_text("{}", encoding="utf-8")
-        return []
-
-    monkeypatch.setattr("sssgen.cli.use._bake", bake)
+    baked = {"skin_fair/light.bin": b"bake", "skin_fair/light.bin.json": "{}"}
+    monkeypatch.setattr("sssgen.presets.project_files._baked_light", lambda *_: baked)
     command = ["use", "skin_fair", "head.glb", "--target", "unity-urp", "-o", "Assets", "--quality", "best", "--force"]
     assert main(command) == 0
     assert (assets / "skin_fair/light.bytes").read_bytes() == b"bake"

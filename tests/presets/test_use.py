@@ -96,6 +96,41 @@ def test_an_open_mesh_has_a_warning(block: str, capsys: pytest.CaptureFixture[st
     assert main(["use", "leaf", "open.obj", "-o", "leaf"]) == 0 and "has holes" not in capsys.readouterr().out
 
 
+def test_a_body_that_cannot_be_baked_leaves_nothing(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(block).read_text(encoding="utf-8").splitlines()
+    last = max(index for index, line in enumerate(lines) if line.startswith("f "))
+    Path("open.obj").write_text("\n".join(lines[:last]), encoding="utf-8")
+    assert main(["use", "wax", "open.obj", "-o", "out", "--quality", "best"]) == 2 and not Path("out").exists()
+    error = capsys.readouterr().err
+    assert "the mesh has a hole" in error and "--> open.obj" in error and "--quality good" in error
+
+
+def test_flipped_triangles_are_turned_in_the_written_mesh(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    import trimesh
+
+    lines = Path(block).read_text(encoding="utf-8").splitlines()
+    first = next(index for index, line in enumerate(lines) if line.startswith("f "))
+    letter, *corners = lines[first].split()
+    lines[first] = " ".join([letter, *corners[::-1]])
+    Path("mixed.obj").write_text("\n".join(lines), encoding="utf-8")
+    assert main(["use", "wax", "mixed.obj", "-o", "out"]) == 0
+    assert "1 triangle faces the other way than its neighbours" in capsys.readouterr().out
+    written = trimesh.load_mesh("out/body.glb")
+    written.merge_vertices(merge_norm=True)
+    assert written.is_winding_consistent and written.volume == pytest.approx(2.0)
+
+
+def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
+    block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", encoding="utf-8")
+    for preset, quality, is_doubtful in (
+        ("wax", "good", True), ("honey", "good", True), ("wax", "fast", False), ("paper", "good", False),
+    ):  # fmt: skip
+        assert main(["use", preset, "flat.obj", "-o", f"{preset}_{quality}", "--quality", quality]) == 0
+        assert ("encloses no volume" in capsys.readouterr().out) == is_doubtful, (preset, quality)
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [

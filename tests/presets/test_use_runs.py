@@ -59,12 +59,10 @@ def test_the_gltf_file_is_valid(name: str, ring: str) -> None:
     assert wanted[name].encode() in Path("out", f"{name}.glb").read_bytes()
 
 
-@pytest.mark.slow
-def test_the_project_of_godot(ring: str) -> None:
-    assert main(["use", "coral", ring, "--target", "godot", "-o", "out"]) == 0
+def shot_in_godot(files: dict[str, str | bytes]) -> Any:
+    """The pixels of a project that Godot draws."""
     or_skip(compilers.get, "godot")
     godot = find()
-    files: dict[str, str | bytes] = {path.name: path.read_bytes() for path in Path("out").iterdir() if path.is_file()}
     with godot.display() as display, godot.project(files | {"shot.gd": SHOT}) as project:
         inside = f"/{project.relative_to(godot.root)}" if godot.root else str(project)
         command = godot.command(godot.program, "--headless", "--path", inside, "--import")
@@ -72,4 +70,43 @@ def test_the_project_of_godot(ring: str) -> None:
         options = ["--rendering-method", "forward_plus", "--rendering-driver", "vulkan"]
         printed = godot.run(project, "shot.gd", options, 300.0, display)
         assert "SCRIPT ERROR" not in printed and "SHADER ERROR" not in printed, printed
-        check_coral(pixels((project / "shot.png").read_bytes()))
+        return pixels((project / "shot.png").read_bytes())
+
+
+def project_files() -> dict[str, str | bytes]:
+    return {path.name: path.read_bytes() for path in Path("out").iterdir() if path.is_file()}
+
+
+@pytest.mark.slow
+def test_the_project_of_godot(ring: str) -> None:
+    assert main(["use", "coral", ring, "--target", "godot", "-o", "out"]) == 0
+    check_coral(shot_in_godot(project_files()))
+
+
+WALL = """
+[sub_resource type="StandardMaterial3D" id="paint"]
+shading_mode = 0
+albedo_color = Color(COLOR, 1)
+
+[sub_resource type="BoxMesh" id="wall"]
+material = SubResource("paint")
+size = Vector3(20, 20, 0.1)
+
+[node name="Main" """
+STANDS = """
+[node name="Wall" type="MeshInstance3D" parent="."]
+transform = Transform3D(1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -6)
+mesh = SubResource("wall")
+"""
+
+
+@pytest.mark.slow
+def test_a_clear_body_shows_what_is_behind_it_in_godot(ring: str) -> None:
+    assert main(["use", "ice", ring, "--target", "godot", "-o", "out"]) == 0
+    files, shots = project_files(), []
+    scene = Path("out", "main.tscn").read_text(encoding="utf-8")
+    for color in ("1, 0, 0", "0, 0, 1"):
+        text = scene.replace('\n[node name="Main" ', WALL.replace("COLOR", color)) + STANDS
+        shots.append(shot_in_godot(files | {"main.tscn": text}).astype(float))
+    red, blue = (shot[int(0.27 * shot.shape[0]), shot.shape[1] // 2] for shot in shots)  # in the upper part of the ring
+    assert red[0] > 150.0 and red[2] < 60.0 and blue[2] > 150.0 and blue[0] < 60.0

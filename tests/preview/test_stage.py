@@ -112,6 +112,31 @@ def test_surroundings_light_the_body_and_are_its_background(drawn: Shown) -> Non
     assert not drawn.faults
 
 
+@pytest.mark.parametrize("renderer", ["webgl2", "webgl"])
+def test_the_scenes_own_surroundings(browser: Any, scene: Path, renderer: str) -> None:
+    """They shine from the right and from above."""
+    panorama = np.zeros((16, 32, 3), np.uint8)
+    panorama[:8, 12:20] = 255
+    Image.fromarray(panorama).save(scene.parent / "around.png")
+    around = '[environment]\nfile = "around.png"\nintensity = 0.8\n'
+    scene.write_text(SCENE.replace("[geometry]", around + "[geometry]"), encoding="utf-8")
+    shown = Shown(browser, str(scene), renderer=renderer)
+    try:
+        without_lamps(shown)
+        picture = shown.picture().mean(axis=-1)
+        height, width = picture.shape
+        body = picture[height // 2 - height // 8 : height // 2 + height // 8, width // 2 - height // 8 :][
+            :, : height // 4
+        ]
+        top, bottom = np.array_split(body, 2)
+        (left, _), (_, right) = (np.array_split(body, 2, axis=1) for _ in range(2))
+        assert top.mean() > bottom.mean() + 10.0 and right.mean() > left.mean() + 10.0
+        shown.page.evaluate("preview.bar.light({ strength: 0 })")
+        assert shown.picture().mean(axis=-1)[height // 2, width // 2] < 3.0 and not shown.faults
+    finally:
+        shown.close()
+
+
 def test_a_dropped_panorama_lights_from_its_sides_and_turns(drawn: Shown) -> None:
     without_lamps(drawn)
     texels = np.zeros((16, 32, 3), np.float32)

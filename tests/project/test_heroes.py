@@ -21,7 +21,9 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The modules of the heroes."""
     pytest.importorskip("scipy")
     monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    import hero_stage.hair
     import hero_stage.hero
+    import hero_stage.human
     import hero_stage.shapes
 
     yield hero_stage
@@ -36,7 +38,7 @@ def test_materials_of_heroes_are_emitted(path: Path) -> None:
 
 
 def test_heroes_name_what_they_have(stage: Any) -> None:
-    assert len(stage.hero.heroes()) >= 4
+    assert len(stage.hero.heroes()) >= 6
     for name in stage.hero.heroes():
         hero = stage.hero.load(name)
         assert hero.lamps and hero.bodies, name
@@ -87,6 +89,49 @@ def test_a_floor_darkens_what_faces_it(stage: Any) -> None:
     up = ball.normals[:, 1]
     assert seen[up > 0.9].min() > 0.9
     assert seen[up < -0.9].max() < 0.4
+
+
+CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+SIDES = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+
+
+def test_a_subdivided_cube_is_round_and_closed(stage: Any) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    mesh = stage.human.mesh(*stage.human.subdivided(CUBE, SIDES, 3))
+    away = np.linalg.norm(mesh.vertices, axis=1)
+    assert away.max() / away.min() < 1.15
+    body = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    assert body.is_watertight and body.volume > 0.0
+    assert np.einsum("nc,nc->n", mesh.normals, mesh.vertices).min() > 0.0
+
+
+def test_an_open_mesh_gets_a_lid(stage: Any) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    vertices, quads = stage.human.subdivided(CUBE, SIDES, 2)
+    volume = trimesh.Trimesh(vertices, stage.human.mesh(vertices, quads).faces, process=False).volume
+    open_part = stage.human.kept(vertices, quads, vertices[:, 1] > -1e-6)  # the upper half
+    mesh = stage.human.mesh(*stage.human.closed(*open_part))
+    body = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    assert body.is_watertight
+    assert body.volume == pytest.approx(0.5 * volume)
+
+
+def test_hairs_go_from_their_roots_along_their_ways(stage: Any) -> None:
+    roots, ways = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+    mesh = stage.hair.strands(roots, ways, np.array([0.5, 0.25]), 0.01, np.zeros((2, 3)), 4)
+    rings = mesh.vertices.reshape(2, 5, 3, 3).mean(axis=2)
+    assert rings[:, 0] == pytest.approx(roots)
+    assert rings[:, -1] == pytest.approx(roots + ways * [[0.5], [0.25]])
+
+
+def test_a_mesh_file_has_colours_and_texture_coordinates(stage: Any, tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    mesh = stage.human.mesh(CUBE, SIDES)
+    both = stage.human.Mesh(mesh.vertices, mesh.faces, mesh.normals, np.full((8, 4), 0.5), CUBE[:, :2])
+    both.write_glb(tmp_path / "cube.glb")
+    visual = next(iter(trimesh.load(tmp_path / "cube.glb", force="scene").geometry.values())).visual
+    assert np.asarray(visual.vertex_attributes["color"])[:, 0] == pytest.approx(128, abs=1)
+    assert np.ptp(visual.uv, axis=0) == pytest.approx([2.0, 2.0])
 
 
 def test_a_flame_is_split_into_pieces_of_one_color(stage: Any) -> None:

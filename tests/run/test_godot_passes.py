@@ -55,7 +55,7 @@ def test_the_script_names_all_passes() -> None:
     assert "class_name JadeRingPasses" in script and 'extends "sssgen_passes.gd"' in script
     rows = [json.loads(line.strip().rstrip(",")) for line in script.splitlines() if line.startswith("\t\t{")]
     assert [row["name"] for row in rows] == ["back_faces", "distant_light_depth", "occluders"]
-    keys = ("name", "seen_from", "layers", "empty", "texture", "views", "lights")
+    keys = ("name", "seen_from", "layers", "empty", "texture", "views", "lights", "size")
     assert rows == [{key: row[key] for key in keys} for row in compiled.reflection["passes"]]
     listed = {file["name"] for file in compiled.reflection["files"]}
     assert {"jade_ring_passes.gd", "sssgen_passes.gd"} <= listed

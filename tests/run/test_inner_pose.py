@@ -56,6 +56,35 @@ def test_surroundings_that_bones_turn(tmp_path: Path) -> None:
     assert said["nearest"] == distances.argmin(axis=1).tolist()
 
 
+def said_by_node(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
+    """What a script prints in a folder, with the facts of its bake."""
+    module = (ROOT / "src" / "sssgen" / "targets" / "javascript" / "inner_light.js").as_uri()
+    before = f"""
+        import {{ readFileSync }} from 'node:fs';
+        import {{ responseOf }} from '{module}';
+        const facts = JSON.parse(readFileSync('body.bin.json', 'utf8'));
+    """
+    command = ["node", "--input-type=module", "-e", before + script]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_a_page_warns_of_another_body(tmp_path: Path) -> None:
+    write_body(tmp_path)
+    body = json.loads((tmp_path / "body.bin.json").read_text("utf-8"))["body"]
+    larger = [1.1 * value for value in body["box_max"]]
+    printed = said_by_node(
+        tmp_path,
+        f"""
+        const response = await responseOf({{ data: readFileSync('body.bin'), facts }});
+        response.checkBody({body["box_min"]}, {body["box_max"]});
+        console.warn('now');
+        response.checkBody({body["box_min"]}, {larger});
+        """,
+    ).stderr
+    before, after = printed.split("now")
+    assert not before and "baked for another body: body.ply is from (" in after, printed
+
+
 @pytest.mark.parametrize("entry", ["bytes", "adler32"])
 def test_a_page_refuses_the_json_of_another_bake(entry: str, tmp_path: Path) -> None:
     write_body(tmp_path)
@@ -63,13 +92,5 @@ def test_a_page_refuses_the_json_of_another_bake(entry: str, tmp_path: Path) -> 
     facts = json.loads(sidecar.read_text("utf-8"))
     facts["file"][entry] += 1
     sidecar.write_text(json.dumps(facts), "utf-8")
-    module = (ROOT / "src" / "sssgen" / "targets" / "javascript" / "inner_light.js").as_uri()
-    script = f"""
-        import {{ readFileSync }} from 'node:fs';
-        import {{ responseOf }} from '{module}';
-        const facts = JSON.parse(readFileSync('body.bin.json', 'utf8'));
-        await responseOf({{ data: readFileSync('body.bin'), facts }});
-    """
-    command = ["node", "--input-type=module", "-e", script]
-    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    ran = said_by_node(tmp_path, "await responseOf({ data: readFileSync('body.bin'), facts });")
     assert ran.returncode != 0 and "body.bin.json is the JSON of another bake" in ran.stderr, ran.stderr

@@ -10,8 +10,9 @@ import pytest
 
 from sssgen.material.baked import BakeFile
 from sssgen.run.render.baked_body import check_body
-from sssgen.run.render.picture_warnings import warnings_of
+from sssgen.run.render.picture_warnings import darkness_warnings, warnings_of
 from sssgen.scene import scene_loading
+from sssgen.scene.body_identity import measures
 from sssgen.scene.geometry import Ball, Mesh
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError
@@ -73,12 +74,36 @@ def test_a_camera_in_a_mesh(scene: Callable[[str], Scene]) -> None:
     assert messages(mesh) == []
 
 
+def test_a_black_picture(scene: Callable[[str], Scene]) -> None:
+    black, shown = np.zeros((2, 2, 3)), np.array([[True, False], [False, False]])
+    (warning,) = darkness_warnings(scene(SCENE), black, shown)
+    assert "no light reaches what the camera sees" in warning.message and warning.span.line == 7
+    (warning,) = darkness_warnings(scene(SCENE[: SCENE.index("[[light]]")]), black, shown)
+    assert warning.message == "the picture is black: the scene has no light"
+    assert darkness_warnings(scene(SCENE), black, ~shown & False) == []
+    assert darkness_warnings(scene(SCENE), black + 0.1, shown) == []
+
+
 def test_a_black_light(scene: Callable[[str], Scene]) -> None:
     assert messages(scene(SCENE.replace("[1.0, 1.0, 1.0]", "[0.0, 0.0, 0.0]"))) == [("this light is black", 9)]
 
 
 def sidecar(kind: str, triangles: int) -> BakeFile:
     return BakeFile(kind, "", {}, {}, {"mesh": {"triangles": triangles}})
+
+
+def test_a_thickness_map_of_an_older_version_of_the_mesh_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "body.obj").write_text(MESH)
+    (tmp_path / "edited.obj").write_text(MESH.replace("v 0 0 1", "v 0 0 1.1"))
+    (tmp_path / "rounded.obj").write_text(MESH.replace("v 0 0 1", "v 0 0 0.999999"))
+    body, edited, rounded = (Mesh(path=str(tmp_path / f"{name}.obj")) for name in ("body", "edited", "rounded"))
+    noted = {"triangles": 4, **measures(body.triangles.places, body.triangles.corners)}
+    for kind in ("thickness", "transmittance"):
+        map_of_body = BakeFile(kind, "", {}, {}, {"mesh": noted})
+        check_body(map_of_body, body, "t.png")
+        check_body(map_of_body, rounded, "t.png")
+        with pytest.raises(SssgenError, match=r"'t\.png' is baked for another mesh than edited\.obj"):
+            check_body(map_of_body, edited, "t.png")
 
 
 def test_a_thickness_map_of_another_mesh_is_refused(tmp_path: Path) -> None:

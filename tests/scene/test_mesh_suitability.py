@@ -58,8 +58,27 @@ def test_normals_that_look_inwards_and_mixed_ones(tmp_path: Path) -> None:
     assert "inside out" in warning
     mixed = FACES.copy()
     mixed[0] = mixed[0, ::-1]
-    warnings = mesh_warnings(mesh(tmp_path / "mixed.obj", 1.0, faces=mixed), INSIDE)
-    assert any("face opposite directions" in warning for warning in warnings)
+    turned = mesh(tmp_path / "mixed.obj", 1.0, faces=mixed)
+    (warning,) = mesh_warnings(turned, INSIDE)
+    assert warning.startswith("1 triangle faces the other way than its neighbours: turned here; do so in the file")
+    (warning,) = mesh_warnings(turned, INSIDE._replace(written="body.glb"))
+    assert warning.endswith("turned here and in body.glb")
+
+
+def test_a_part_that_is_inside_out(tmp_path: Path) -> None:
+    lines = [f"v {x} {y} {z}" for at in (0.0, 3.0) for x, y, z in CORNERS + np.array([at, 0.0, 0.0])]
+    faces = [*(FACES + 1).tolist(), *(FACES[:, ::-1] + 9).tolist()]
+    lines += [f"f {first} {second} {third}" for first, second, third in faces]
+    (tmp_path / "two.obj").write_text("\n".join(lines), encoding="utf-8")
+    (warning,) = mesh_warnings(Mesh(path=str(tmp_path / "two.obj")), INSIDE)
+    assert warning == "1 of the mesh's 2 parts is inside out: turn the triangles in the file"
+
+
+def test_sheets_have_no_inside(tmp_path: Path) -> None:
+    flat = mesh(tmp_path / "flat.obj", 1.0, faces=np.r_[FACES[:1], FACES[:1, ::-1]])
+    (warning,) = mesh_warnings(flat, INSIDE)
+    assert "encloses no volume" in warning and "leaf or paper" in warning
+    assert mesh_warnings(flat, MeshNeeds()) == []
 
 
 def test_textures_need_coordinates(tmp_path: Path) -> None:
@@ -71,4 +90,4 @@ def test_textures_need_coordinates(tmp_path: Path) -> None:
 
 def test_a_body_of_few_mean_free_paths(tmp_path: Path) -> None:
     (warning,) = mesh_warnings(mesh(tmp_path / "box.obj", 1.0), INSIDE._replace(paths=0.4))
-    assert "0.4 mean free paths thick" in warning
+    assert "0.4 mean free paths thick" in warning and "leaf or paper" in warning

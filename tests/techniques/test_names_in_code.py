@@ -9,9 +9,10 @@ from sssgen.material import library
 
 EXAMPLE, SHAPE, HINT = "an example in a text for users", "a shape of a body", "a hint of uniforms"
 CHOSEN_FOR_IMPORTS = {
-    "back_face_thickness", "base_color", "base_color_alone", "clearcoat_constants", "clearcoat_map",
+    "back_face_thickness", "back_face_thickness_soft", "base_color", "base_color_alone", "clearcoat_constants",
+    "clearcoat_map",
     "constant_thickness", "depth_map_path", "diffuse_transmission_map", "emission_map", "interior_octaves",
-    "eye_layers_thickness", "lamps_through_body", "light_layers_path", "metallic_roughness_map",
+    "eye_layers_thickness", "lamps_through_body", "light_layers_path_soft", "metallic_roughness_map",
     "normal_map", "normal_map_directx", "occlusion_map", "pbr_constants", "seen_through", "seen_through_body",
     "sheen_constants", "specular_level",
     "specular_map", "thickness_map", "uv_transform", "vertex_tint",

@@ -356,6 +356,50 @@ def test_each_light_has_its_view_of_the_layers() -> None:
         close(lengths(P=p, L=np.array(other), **values), np.full(200, 1e4))
 
 
+def test_a_beam_of_light_has_the_mean_of_its_rays() -> None:
+    """The rays stay in the tile of their light: the others have no layers here."""
+    p = rng().uniform([-0.9, -0.9, 0.8], [0.9, 0.9, 2.8], (200, 3))
+    view = np.array([[0.25, 0.0, 0.0, 0.25], [0.0, 0.25, 0.0, 0.75], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    picture = np.full((64, 64, 4), 6e4)
+    picture[32:, :32] = np.array([1.0, 1.5, 2.0, 2.6]) + rng().uniform(0.0, 0.2, (32, 32, 4))
+    values = {"light_matrix_2": view, "light_layer_map": Texture(picture, "linear", "clamp")}
+    along = {"L": np.array([0.0, 0.0, -1.0]), **values}
+    single, beam = technique("light_layers_path"), technique("light_layers_path_soft")
+    close(beam(P=p, beam_radius=0.0, **along), single(P=p, **along), atol=1e-9)
+    expected = np.zeros(len(p))
+    for across in beam_places(0.1):
+        moved = p.copy()
+        moved[:, :2] = np.clip(p[:, :2] + across, -1.0 + 0.008, 1.0 - 0.008)
+        expected += single(P=moved, **along) / 8.0
+    close(beam(P=p, beam_radius=0.1, **along), expected, atol=1e-5)
+    assert expected.min() == 0.0 and expected.max() > 1.0
+    close(beam(P=p, L=np.array([0.0, 0.0, 1.0]), beam_radius=0.1, **values), np.full(200, 1e4))
+
+
+def beam_places(radius: float) -> Array:
+    """The places of a beam's eight rays across its axis, (8, 2)."""
+    turn = np.arange(8) * np.pi * (3.0 - np.sqrt(5.0))
+    return radius * np.sqrt((np.arange(8) + 0.5) / 8.0)[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
+def test_a_beam_of_the_eye_counts_what_is_behind_the_surface() -> None:
+    """A picture of 40 × 20: a step from a thin to a thick part, and a part that is nearer than the surface."""
+    depth = np.zeros((20, 40, 1))
+    depth[:, 10:20], depth[:, 20:30], depth[:, 30:35] = 2.5, 3.5, 1.5
+    place = np.stack([(np.arange(40) + 0.5) / 40.0, np.full(40, 0.525)], axis=1)
+    values = {"back_face_map": Texture(depth, "nearest", "clamp"), "eye_distance": 2.0}
+    beam = technique("back_face_thickness_soft")
+    total, weight = technique("back_face_thickness")(screen_uv=place, **values), np.ones(40)
+    for across in beam_places(0.2 / 2.0):
+        moved = np.clip(place + across * [0.68, 1.2], 0.0, 0.999)
+        inside = np.maximum(depth[(moved[:, 1] * 20).astype(int), (moved[:, 0] * 40).astype(int), 0] - 2.0, 0.0)
+        share = np.minimum(inside / 0.2, 1.0)
+        total, weight = total + share * inside, weight + share
+    lengths = beam(screen_uv=place, beam_radius=0.2, **values)
+    close(lengths, total / weight, atol=1e-5)
+    assert (lengths[12:18] == 0.5).any() and ((lengths > 0.6) & (lengths < 1.4)).sum() > 2 and lengths[36:].max() == 0.0
+
+
 def test_the_published_depth_map_absorption() -> None:
     """The result has no upper bound; it may be greater than 1."""
     p, matrix, depths, _, entry = lights_view()

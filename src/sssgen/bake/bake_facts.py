@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, NotRequired, TypedDict
 
 from sssgen.material.baked import ParameterValue
-from sssgen.scene.body_identity import BodyIdentity
+from sssgen.scene.body_identity import BodyIdentity, BodyMeasures
 from sssgen.targets.reflection_record import ImportSettings
 
 _Imported = TypedDict("_Imported", {"import": ImportSettings})  # a keyword cannot be the name of a field of a class
@@ -26,14 +26,21 @@ class BakeFacts(_Imported):
     """The name of the texture in its technique, if a bake has several"""
 
 
-class SolidFacts(TypedDict):
-    """A mesh of a distance texture."""
+class MeshFacts(BodyMeasures):
+    """A mesh."""
 
     triangles: int
-    closed: bool
     inside_out: bool
+    turned: int
+    """How many triangles were turned, so that neighbours face the same way"""
     mixed_sides: bool
     """Whether its triangles disagree about its inside"""
+
+
+class SolidFacts(MeshFacts):
+    """A mesh of a distance texture."""
+
+    closed: bool
     box_min: list[float]
     box_max: list[float]
 
@@ -69,16 +76,13 @@ class DistanceFacts(BakeFacts):
     """The share of texels"""
 
 
-class SurfaceFacts(TypedDict):
+class SurfaceFacts(MeshFacts):
     """A mesh of a map on its surface."""
 
-    triangles: int
     new_uv: bool
     """Whether the bake made its texture coordinates"""
-    inside_out: bool
     shared_texels: float
     """The share of texels with several surface points"""
-    mixed_sides: bool
 
 
 class SurfaceMapFacts(BakeFacts):

@@ -55,8 +55,14 @@ def check_response_path(path: str) -> None:
 
 def write_response(path: str, data: bytes, facts: BakeFacts) -> list[str]:
     """Writes the response of a body to light, and its JSON; returns the paths."""
-    about = {"name": os.path.basename(path), "bytes": len(data), "adler32": checksum(data)}
-    return _write(path, data, {**facts, "file": about})
+    folder, name = os.path.split(path)
+    return [written.path for written in write_files(folder, response_files(name, data, facts))]
+
+
+def response_files(name: str, data: bytes, facts: BakeFacts) -> dict[str, str | bytes]:
+    """The file of a response, and its JSON, by their names."""
+    about = {"name": os.path.basename(name), "bytes": len(data), "adler32": checksum(data)}
+    return {name: data, **_json_beside(name, {**facts, "file": about})}
 
 
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: BakeFacts) -> list[str]:

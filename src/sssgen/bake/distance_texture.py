@@ -11,10 +11,10 @@ import numpy.typing as npt
 from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_facts import DistanceError, DistanceFacts
 from sssgen.bake.distance_encoding import ENCODINGS, encode, error_at_texels
+from sssgen.bake.mesh_facts import solid_facts
 from sssgen.bake.voxel_distance import BLOCK, distances, inside
 from sssgen.bake.voxel_grid import Array, Grid, around
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.mesh_distance import mixed_sides
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 from sssgen.support.progress import Progress
@@ -96,11 +96,7 @@ def sdf(
         error["but"] = "not across its holes, where the sign jumps"
     facts: DistanceFacts = {
         "kind": "distance", "holds": None,
-        "mesh": {
-            "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
-            "mixed_sides": mixed_sides(mesh.triangles.corners),
-            "box_min": _floats(low), "box_max": _floats(high),
-        },
+        "mesh": solid_facts(mesh),
         "texels": list(grid.counts), "voxel": _floats(grid.voxel),
         "box_min": _floats(grid.low), "box_max": _floats(grid.high),
         "encoding": encoding, "formula": "distance = (2 texel - 1) * range, texel from 0 to 1",

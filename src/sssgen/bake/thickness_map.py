@@ -13,12 +13,12 @@ from sssgen.bake.bake_facts import SurfaceMapFacts, ThicknessFacts
 from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.chord_lengths import Chords
 from sssgen.bake.mean_length import in_halves
+from sssgen.bake.mesh_facts import side_warnings, surface_facts
 from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
 from sssgen.jobs.executor import Item, Progress, failures, run
 from sssgen.jobs.result_store import Store
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.mesh_distance import MIXED, mixed_sides
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -86,10 +86,7 @@ def thickness_map(
     holds = "transmittance" if is_transmittance else "thickness"
     facts: ThicknessFacts = {
         "kind": holds, "holds": holds, "mode": "direction" if request.light else request.mode,
-        "mesh": {
-            "triangles": len(mesh.corners), "new_uv": new_uv, "inside_out": body.inside_out,
-            "shared_texels": round(surface.shared, 6), "mixed_sides": mixed_sides(mesh.corners),
-        },
+        "mesh": surface_facts(body, new_uv, surface.shared),
         "light": request.light.facts() if request.light else None,
         "unit": "" if is_transmittance else "of the mesh", "range": [0.0, largest],
         "formula": "transmittance = texel" if is_transmittance else f"thickness = {largest!r} * texel",
@@ -108,13 +105,11 @@ def thickness_map(
 
 def warnings(facts: SurfaceMapFacts) -> list[str]:
     """Warnings about a map for the user."""
-    messages = ["the mesh is inside out: its normals are reversed for the bake"] if facts["mesh"]["inside_out"] else []
+    messages = side_warnings(facts["mesh"])
     if (shared := facts["mesh"]["shared_texels"]) > SHARED and not facts["mesh"]["new_uv"]:
         messages.append(
             f"{shared:.0%} of the texels have several surface points: --unwrap makes new texture coordinates"
         )
-    if facts["mesh"]["mixed_sides"]:
-        messages.append(MIXED)
     if (lost := facts["lost_rays"]) > 0.001:
         messages.append(f"{lost:.1%} of the rays left through holes of the mesh and are excluded")
     return messages

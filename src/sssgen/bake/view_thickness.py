@@ -14,17 +14,17 @@ import numpy as np
 from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import atlas, fill_map
 from sssgen.bake.bake_facts import ViewThicknessFacts
+from sssgen.bake.mesh_facts import surface_facts
 from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
 from sssgen.jobs.executor import Item, Progress, failures, run
 from sssgen.jobs.result_store import Store
 from sssgen.lab.reference import view_harmonics
-from sssgen.material.baked import ParameterValue
+from sssgen.material.baked import ParameterValue, mesh_key
 from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene, media
 from sssgen.scene.measured.media import Medium
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.mesh_distance import mixed_sides
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -108,7 +108,7 @@ def bake(
     text = obj(mesh, uv) if new_uv else ""
     identity = body_identity.identity(body, scaled=False)
     if text:  # the map belongs to the mesh that is written with it
-        identity["key"] = body_identity.mesh_key(text.encode())
+        identity["key"] = mesh_key(text.encode())
     parameters: dict[str, ParameterValue] = {"fade_length": length}
     for number in range(IMAGES):
         part = slice(3 * number, 3 * number + 3)
@@ -117,10 +117,7 @@ def bake(
     facts: ViewThicknessFacts = {
         "kind": "view_thickness", "holds": None,
         "body": identity,
-        "mesh": {
-            "triangles": len(mesh.corners), "new_uv": new_uv, "inside_out": body.inside_out,
-            "shared_texels": round(surface.shared, 6), "mixed_sides": mixed_sides(mesh.corners),
-        },
+        "mesh": surface_facts(body, new_uv, surface.shared),
         "mean_free_path": mean_free_path, "unit": "of the mesh",
         "formula": "length = -fade_length ln(1 - f), f = sum of (lowest + span texel) times the harmonics of the "
         "eye's ray in object space",

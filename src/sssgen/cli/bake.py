@@ -89,7 +89,7 @@ def _sdf_options(parser: ArgumentParser) -> None:
 def _sdf(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake.distance_texture import sdf
-    from sssgen.scene.mesh_distance import MIXED
+    from sssgen.bake.mesh_facts import side_warnings
 
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
@@ -111,9 +111,8 @@ def _sdf(arguments: Namespace) -> Result:
         f"{x} × {y} × {z} texels of {baked.grid.voxel.max():.4g} units; {baked.facts['inside']:.1%} are inside",
         f"the largest error is {error['at_texels']:.2g} at texels, and {error['between_texels']:.2g} between them"
         + (f", but {error['but']}" if "but" in error else ""),
-        f"the mesh is {'closed' if mesh['closed'] else 'open'}"
-        + (", and inside out: it was reversed" if mesh["inside_out"] else ""),
-        *([f"warning: {MIXED}"] if mesh["mixed_sides"] else []),
+        f"the mesh is {'closed' if mesh['closed'] else 'open'}",
+        *(f"warning: {warning}" for warning in side_warnings(mesh)),
     ]
     return paths, baked.facts, lines
 

@@ -123,7 +123,8 @@ def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] |
     height, width = picture.linear.shape[:2]
     facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
     text = f"wrote {output}: {width} × {height} on {backend.name} ({backend.device()}) in {seconds:.2f} s"
-    print_result(arguments.json, {**facts, "seconds": round(seconds, 3)}, text)
+    diagnostics = [warning.as_json() for warning in picture.warnings]
+    print_result(arguments.json, {**facts, "seconds": round(seconds, 3), "diagnostics": diagnostics}, text)
     return OK
 
 

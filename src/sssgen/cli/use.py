@@ -6,14 +6,13 @@ import contextlib
 import os
 import shlex
 from argparse import ArgumentParser, BooleanOptionalAction, Namespace
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_output
 from sssgen.cli.output import OK, print_result
 from sssgen.presets.qualities import QUALITIES
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_writer import Written, check_folder, check_unchanged, write_files
+from sssgen.support.file_writer import check_folder, write_files
 from sssgen.support.paths import posix, shell_word
 from sssgen.support.progress import ProgressBar
 
@@ -48,7 +47,7 @@ def add_options(parser: ArgumentParser) -> None:
         "--material",
         metavar="NAME",
         default="",
-        help="of a glTF file: the part with this material alone, and its pictures",
+        help="of a glTF file: the part with this material, and its pictures; other parts keep their own materials",
     )
     add(
         "--keep-color", action=BooleanOptionalAction, default=None,
@@ -60,9 +59,9 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Writes the project; with --open also serves and opens it."""
-    from sssgen.presets.engine_project import engine_files, material_files
     from sssgen.presets.kept_material import report_kept
     from sssgen.presets.preset import preset
+    from sssgen.presets.project_files import project_files
     from sssgen.presets.request import Request
     from sssgen.presets.used_mesh import used_mesh
 
@@ -77,11 +76,7 @@ def run(arguments: Namespace) -> int:
         mesh = used_mesh(arguments.MESH, size, arguments.material)
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
-        written = _write(folder, material_files(request), arguments.force)
-        if request.baked:
-            written += _bake(os.path.join(folder, request.folder), bar)
-        bar(2, 3, "emitting")
-        written += _write(folder, engine_files(request, folder), arguments.force)
+        written = write_files(folder, project_files(request, folder, arguments.force, bar))
     if mesh.part is not None:
         report_kept(mesh.part, request.shows_color, mesh.report)
     warnings = _warnings(request)
@@ -139,7 +134,7 @@ def _warnings(request: Request) -> list[str]:
         warnings.append(
             f"the file has several materials, whose pictures are left out: choose one with --material ({names})"
         )
-    elif part is not None and part.others:
+    elif part is not None and part.others and not request.rest:
         warnings.append(f"left out are the parts with other materials: {', '.join(part.others)}")
     return warnings
 
@@ -161,28 +156,6 @@ def _next_lines(request: Request, folder: str) -> list[str]:
         f"open it: {request.opened.replace('this folder', shell_word(posix(folder)))}",
         f"change it: `sssgen preview {place}/scene.toml`; then, in {place}: {request.change}",
     ]
-
-
-def _write(folder: str, files: Mapping[str, str | bytes], force: bool) -> list[Written]:
-    """Writes files; without `force` one that is there with another content is an error, as it may have been edited."""
-    if not force:
-        check_unchanged(folder, files)
-    return write_files(folder, files)
-
-
-def _bake(folder: str, bar: ProgressBar) -> list[Written]:
-    """Bakes the light inside the body of the scene in a folder; a bake of this body and medium is kept."""
-    from sssgen.bake import baked_files, fluence, relit
-    from sssgen.lab.fluence.fluence_field import Settings
-    from sssgen.lab.fluence.traced_body import fitting_voxels
-    from sssgen.presets.preset_stages import RESPONSE
-    from sssgen.presets.request import RANK
-
-    scene, path = fluence.body(os.path.join(folder, "scene.toml"), "", 10.0), os.path.join(folder, RESPONSE)
-    if relit.is_current(path, scene):
-        return [Written(path, False)]
-    data, facts = relit.bake(scene, RANK, Settings(fitting_voxels(scene)), progress=bar)
-    return [Written(path, True) for path in baked_files.write_response(path, data, facts)]
 
 
 def _command(arguments: Namespace) -> str:

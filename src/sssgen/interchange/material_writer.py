@@ -17,8 +17,9 @@ from sssgen.interchange.technique_choice import Choice, choose, world_unit
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.material.material_text import material_text
 from sssgen.material.model import wrong_name
-from sssgen.scene.geometry_mesh import has_inside
+from sssgen.scene.mesh_distance import FLAT, volume_of
 from sssgen.scene.mesh_files import FileContent
+from sssgen.scene.mesh_repair import has_inside, welded
 from sssgen.support.file_writer import check_unchanged, write_files
 from sssgen.support.paths import place
 from sssgen.support.progress import Progress, silent
@@ -27,6 +28,8 @@ _LONGEST_NAME = 48
 """Letters of a material's name; sssgen takes 64."""
 WHOLE_SCENE = "scene.toml"
 """The scene that shows all bodies together."""
+_OPEN_SHEET = 1e-4
+"""The volume of an open mesh, over the cube of its size, up to which it is a sheet."""
 _PLAIN = ImportedView()
 SURROUNDINGS = "surroundings.png"
 """The picture of the surroundings that all scenes of an import share."""
@@ -122,16 +125,15 @@ def identifiers(names: Sequence[str]) -> list[str]:
 
 def is_closed(mesh: FileContent) -> bool:
     """Whether the triangles have an inside; vertices at one place count as one."""
-    _, places = np.unique(mesh.vertices, axis=0, return_inverse=True)
-    return has_inside(places.reshape(-1)[mesh.faces])
+    return has_inside(welded(mesh.vertices, mesh.faces)[1][mesh.faces])
 
 
 def mean_chord(mesh: FileContent) -> float:
     """The mean chord 4 V / S of a body (Cauchy), or a tenth of the size of an open sheet."""
     corners = mesh.vertices[mesh.faces]
-    first, second, third = np.moveaxis(corners - mesh.vertices.mean(axis=0), 1, 0)
-    across = np.cross(second - first, third - first)
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
-    volume = abs(float(np.einsum("nc,nc->", first, np.cross(second, third)))) / 6.0
+    volume = abs(volume_of(mesh.vertices, mesh.faces))
     size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    return 4.0 * volume / area if area > 0.0 and volume > 1e-4 * size**3 else 0.1 * size
+    least = FLAT if is_closed(mesh) else _OPEN_SHEET
+    return 4.0 * volume / area if area > 0.0 and volume > least * size**3 else 0.1 * size

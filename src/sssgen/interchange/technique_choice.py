@@ -54,9 +54,26 @@ class Choice(NamedTuple):
     """The length of a world unit"""
 
 
+class _Lengths(NamedTuple):
+    """How lengths inside a body are measured in each frame."""
+
+    view: str
+    """The technique for the eye's rays"""
+    light: str
+    """The same for the rays of lights"""
+    beam: float = 0.0
+    """The radius of the beam over which both are averaged, in mean free paths; 0 for one ray"""
+
+
+_ONE_LIGHT = _Lengths("back_face_thickness", "depth_map_path")
+_LIGHTS = _Lengths("back_face_thickness_soft", "light_layers_path_soft", 2.0)
+_WIDEST_BEAM = 0.2
+"""The radius of the widest beam, in mean chords: it would miss thin parts."""
+
+
 class _Chooser:
     def __init__(
-        self, model: SurfaceModel, notes: Notes, mean_chord: float, closed: bool, metres: float, light_path: str
+        self, model: SurfaceModel, notes: Notes, mean_chord: float, closed: bool, metres: float, lengths: _Lengths
     ) -> None:
         self.model, self.notes, self.mean_chord = model, notes, mean_chord
         has_map = model.thickness.image is not None
@@ -65,7 +82,7 @@ class _Chooser:
         self.composer = Composer(model)
         self.stages: list[MaterialSection] = []
         self.clamped: dict[str, str] = {}
-        self.metres, self.light_path = metres, light_path
+        self.metres, self.lengths = metres, lengths
 
     def add(self, section: str, technique: str, bind: dict[str, str] | None = None, **values: object) -> None:
         """Adds a stage; a `ComposedTexture` also sets the stage's set of coordinates."""
@@ -129,7 +146,7 @@ class _Chooser:
             return
         seen_through = self.measured and not model.transmission.is_zero
         if scatters_inside(model):
-            self.add("thickness", "back_face_thickness")
+            self.add("thickness", self.lengths.view, beam_radius=self.beam_radius())
         elif seen_through:
             self.add("thickness", "eye_layers_thickness")
         if not model.diffuse_transmission.is_zero or not (model.transmission.is_zero or self.measured):
@@ -316,13 +333,20 @@ class _Chooser:
         became = f"four exponentials and a matte share in place of light transport; extinction {extinction} per metre"
         self.notes.add_approximation("interior", became)
         self.add(
-            "translucency", "interior_octaves", {"light_path": self.light_path},
+            "translucency", "interior_octaves", {"light_path": self.lengths.light},
             extinction=[min(part * self.metres, _DENSEST_INSIDE) for part in medium.extinction],
             scattering_albedo=medium.albedo,
             octaves=[weight * part for part in self.shares().octaves],
             mean_free_path=min(max(medium.mean_free_path / self.metres, 1e-4), 100.0),
+            beam_radius=self.beam_radius(),
         )  # fmt: skip
         self.stages[-1] = self.stages[-1]._replace(comment=_ONE_MEDIUM)
+
+    def beam_radius(self) -> float | None:
+        """In world units; None for techniques that follow one ray."""
+        assert self.model.interior is not None
+        path = isotropic_medium(self.model.interior).mean_free_path
+        return min(self.lengths.beam * path, _WIDEST_BEAM * self.mean_chord) / self.metres or None
 
     def shares(self) -> Shares:
         """How the light in the body is divided."""
@@ -338,7 +362,7 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float, closed: bool, m
     stages cannot express.
     """
     model = as_matte(limit_numbers(model, notes), notes, mean_chord)
-    return _Chooser(model, notes, mean_chord, closed, metres, "depth_map_path").choose()
+    return _Chooser(model, notes, mean_chord, closed, metres, _ONE_LIGHT).choose()
 
 
 def choose_for_lights(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
@@ -346,7 +370,7 @@ def choose_for_lights(model: SurfaceModel, notes: Notes, mean_chord: float) -> C
 
     A dense body transmits light where it is thin, so that it has no other technique.
     """
-    return _Chooser(limit_numbers(model, notes), notes, mean_chord, False, 1.0, "light_layers_path").choose()
+    return _Chooser(limit_numbers(model, notes), notes, mean_chord, False, 1.0, _LIGHTS).choose()
 
 
 def _limit_pair(pair: tuple[float, float]) -> tuple[float, float]:

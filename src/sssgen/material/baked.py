@@ -9,6 +9,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library
+from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
@@ -80,6 +81,26 @@ def read_bake_file(path: str) -> BakeFile | None:
         if not all(isinstance(number, int | float) and abs(number) < LARGEST for number in numbers):
             raise failure(f"'parameters': '{name}' must be a number or a list of numbers", "bake it again", shown)
     return BakeFile(data["kind"], str(data.get("holds") or ""), parameters, settings, data)
+
+
+def mesh_key(content: bytes) -> str:
+    """The entry `key` of the body of a JSON file, for a mesh with this content: that of `scene.body_identity.key`."""
+    return cache.digest(repr(("Mesh", [], cache.digest(content))).encode())[:16]
+
+
+def other_mesh(path: str) -> str:
+    """The name of a mesh beside a baked texture, where it is no longer the one that was baked; else ''."""
+    described = read_bake_file(path)
+    body = described.facts.get("body") if described is not None else None
+    if not isinstance(body, dict) or not isinstance(name := body.get("name"), str) or name.endswith(".sss"):
+        return ""
+    mesh = os.path.join(os.path.dirname(path), name)
+    note(mesh)
+    try:
+        with open(mesh, "rb") as file:
+            return "" if mesh_key(file.read()) == body.get("key") else name
+    except OSError:  # it may be elsewhere
+        return ""
 
 
 def check(baked_texture: BakeFile, uniform: Uniform, name: str) -> None:

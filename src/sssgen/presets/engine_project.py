@@ -21,7 +21,7 @@ from sssgen.presets import unity_assets, webgpu_page
 from sssgen.presets.bound_textures import bound_textures
 from sssgen.presets.preset_stages import preset_material
 from sssgen.presets.project_templates import Files, folder_names, render
-from sssgen.presets.request import MESH, Request, shared_values
+from sssgen.presets.request import MESH, REST, Request, shared_values
 from sssgen.run.web_library import NETWORK, library, network_import_map
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import place
@@ -66,14 +66,14 @@ def engine_files(request: Request, folder: str) -> Files:
     }
     if engine.has_folders:
         return unity_assets.files(request, compiled, values, folder)
-    files: Files = dict(compiled.files)
+    files: Files = dict(compiled.files) | ({REST: request.rest} if request.rest else {})
     if request.target == "webgpu":
         files |= webgpu_page.files(engine)
         values |= {"air": webgpu_page.AIR, "glow": webgpu_page.glow()}
     if engine.is_page:
         values["package"] = engine.package
-        values["import_map"], libraries = _import_map(request.target)
-        values["network"] = NETWORK if NETWORK in values["import_map"] else ""
+        import_map, libraries = _import_map(request.target)
+        values |= {"import_map": import_map, "network": NETWORK if NETWORK in import_map else ""}
         files |= libraries
     for name, template in _templates(request).items():
         files[name] = render(template, **values)

@@ -23,17 +23,25 @@ class Engine(NamedTuple):
     """The package of npm that the page needs beside it"""
     has_folders: bool = False
     """Whether each preset has a folder of its name, beside one for what all presets share"""
+    shows_rest: bool = False
+    """Whether the project shows the parts of a glTF file that have other materials"""
 
 
 ENGINES = {
-    "threejs": Engine("three.js", f"{_SERVE}.", is_page=True),
-    "babylonjs": Engine("Babylon.js", f"`npm install`, then {_SERVE}.", is_page=True, package="@babylonjs/core"),
-    "playcanvas": Engine("PlayCanvas", f"`npm install`, then {_SERVE}.", is_page=True, package="playcanvas"),
+    "threejs": Engine("three.js", f"{_SERVE}.", is_page=True, shows_rest=True),
+    "babylonjs": Engine(
+        "Babylon.js", f"`npm install`, then {_SERVE}.", is_page=True, package="@babylonjs/core", shows_rest=True,
+    ),
+    "playcanvas": Engine(
+        "PlayCanvas", f"`npm install`, then {_SERVE}.", is_page=True, package="playcanvas", shows_rest=True,
+    ),
     "webgpu": Engine(
         "WebGPU without an engine", f"{_SERVE} that has WebGPU.", is_page=True, shader="wgsl",
         shell=("shadow=shadow_map", "environment=prefiltered_environment", "tone_mapping=khronos_neutral"),
     ),
-    "godot": Engine("Godot 4", "import `project.godot` of this folder in Godot's project manager, and press F5."),
+    "godot": Engine(
+        "Godot 4", "import `project.godot` of this folder in Godot's project manager, and press F5.", shows_rest=True,
+    ),
     "unity-urp": Engine(
         "Unity 2021.2 or later, with URP",
         "put the folders `Sssgen` and `NAME` into `Assets` of a project with URP, and choose the menu *Sssgen*. It was "

@@ -16,6 +16,7 @@ import numpy as np
 from sssgen.interchange import gltf_reader
 from sssgen.interchange.gltf_container import SUFFIXES, open_file
 from sssgen.interchange.gltf_meshes import Part, join_parts
+from sssgen.interchange.gltf_rest import without_material
 from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import Quantity, SurfaceModel
@@ -42,7 +43,9 @@ class GltfPart(NamedTuple):
     imported: ImportedMaterial | None
     """Their material, where it is one alone; its pictures have the mesh's first texture coordinates"""
     others: Sequence[str] = ()
-    """The names of further materials: their triangles are in the mesh where no material was chosen, else left out"""
+    """The names of further materials: their triangles are in the mesh where no material was chosen, else in `rest`"""
+    rest: bytes = b""
+    """A .glb with the triangles of further materials, where one was chosen and there are others"""
 
 
 def is_gltf(path: str) -> bool:
@@ -62,7 +65,8 @@ def read_part(path: str, material: str, report: Report) -> GltfPart:
         raise failure(f"no triangle has the material '{material}'", "choose another with --material", posix(path))
     if material:
         names = [element.text("name") for element in open_file(path).root.objects("materials")]
-        return _placed(drawn[0], [name for name in names if name != drawn[0].model.name])
+        chosen = _placed(drawn[0], [name for name in names if name != drawn[0].model.name])
+        return chosen._replace(rest=without_material(path, material))
     if not drawn:
         raise failure("the file holds no triangles", "", posix(path))
     if len(drawn) == 1:

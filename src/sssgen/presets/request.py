@@ -20,6 +20,8 @@ from sssgen.presets.used_mesh import UsedMesh
 from sssgen.scene.mesh_suitability import MeshNeeds
 
 MESH = "body.glb"
+REST = "rest.glb"
+"""The other parts of a glTF file"""
 RANK = 16
 """The numbers of a voxel of baked light."""
 _LAMP, _SHEET_LAMP = 260, 50
@@ -31,9 +33,9 @@ _LAMP_SQUARE = 13.8
 _ROOM, _BRIGHT_ROOM = 0.15, 0.7
 """The strength of the surroundings, for bodies that a lamp makes glow and for clear ones. Engines have other
 surroundings and falloffs: the factors in `shared_values` were chosen so that the projects look alike."""
-BRIGHTNESS = 2.0
-"""The light of the picture of the surroundings where their strength is 1. The page with WebGPU has twice as much: it is
-then as bright as the rooms of engines."""
+BRIGHTNESS = 4.0
+"""The light of the picture of the surroundings where their strength is 1: it is then as bright as the rooms of
+engines."""
 _EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
 """The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
 
@@ -63,9 +65,10 @@ class Request(NamedTuple):
     @property
     def needs(self) -> MeshNeeds:
         """What the material needs of the mesh."""
-        traced = self.quality != "good" or not self.preset.scatters
-        path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if self.preset.scatters else 1.0
-        return MeshNeeds(self.preset.scatters, (), None if traced else self.mesh.size.mean_chord / path)
+        inside = self.quality != "fast" and not any(self.preset.sheet)
+        scattered = inside and self.preset.scatters and not self.baked
+        path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if scattered else 1.0
+        return MeshNeeds(inside, (), self.mesh.size.mean_chord / path if scattered else None, MESH)
 
     @property
     def shows_color(self) -> bool:
@@ -77,6 +80,12 @@ class Request(NamedTuple):
         """The record of the mesh's own material, whose pictures are kept."""
         part = self.mesh.part
         return None if part is None or part.imported is None else part.imported.model
+
+    @property
+    def rest(self) -> bytes:
+        """The file of the parts with other materials, where the project shows them."""
+        part = self.mesh.part
+        return part.rest if part is not None and self.engine.shows_rest else b""
 
     @property
     def name(self) -> str:
@@ -119,7 +128,7 @@ def shared_values(request: Request) -> dict[str, object]:
         "title": preset.title, "name": request.name, "mesh": " ".join(os.path.basename(mesh.path).split()),
         "target": request.target, "quality": f"{request.quality}, {QUALITIES[request.quality]}",
         "unit_mm": f"{mesh.size.unit_mm:.4g}", "command": request.command, "open": request.opened,
-        "change": request.change, "body": MESH,
+        "change": request.change, "body": MESH, "rest": REST if request.rest else "",
     }  # fmt: skip
     places = {
         "center": center.round(6).tolist(), "radius": round(mesh.radius, 6), "low": [*mesh.low], "high": [*mesh.high],

@@ -77,6 +77,8 @@ interface AnyPicture {
   controls: Control[];
   textures: Slot[];
   cost: Record<string, Record<string, number>>;
+  /** The light from all around that the scene's file names. */
+  environment?: Texels | null;
   exposure: number;
 }
 

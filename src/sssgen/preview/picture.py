@@ -19,8 +19,9 @@ from sssgen.preview.bodies import OWN_MESH, SHAPES, fit, frame, packed_triangles
 from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, Slot, emitted_head
 from sssgen.preview.mesh_notes import mesh_notes
 from sssgen.run.render.missing_textures import missing_textures
-from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.scene_values import environment_of, shell_of
 from sssgen.run.render.shell_values import Shell
+from sssgen.scene.environment import Environment
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.scene import Picture as PictureFile
 from sssgen.scene.scene import Scene
@@ -99,6 +100,7 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
             for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
         ],
         "ambient": list(shell.ambient),
+        "environment": _environment(scene, pieces),
         "background": [list(color) for color in scene.background],
         "exposure": scene.exposure,
         "shadows": "shadow" in scene.shell,
@@ -106,6 +108,21 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
         "camera": _camera(scene, choices.shape),
     }
     return Picture(head, pieces.data, material, shell.parameters)
+
+
+def _environment(scene: Scene, pieces: Pieces) -> dict[str, Any] | None:
+    """The texels of the scene's [environment]; None without one."""
+    environment = environment_of(scene)
+    if environment is None:
+        return None
+    return texels_of(_panorama(environment), pieces.add)
+
+
+@functools.lru_cache(4)
+def _panorama(environment: Environment) -> Texture:
+    """The light from each direction, from below: three.js shows a white matte plane in it as it is, as sssgen does."""
+    light = environment.values()[::-1]
+    return Texture(np.concatenate([light, np.ones((*light.shape[:2], 1))], axis=-1), "linear", "repeat")
 
 
 def missing_text(scene: Scene, material: Material, reflection: Reflection, shell: Shell) -> str:

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, NotRequired, TypedDict
 
+import numpy as np
+
+from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Distance, Geometry, Mesh, Union
+from sssgen.scene.mesh_distance import volume_of
 from sssgen.support import cache
 
+SAME = 1e-4
+"""The difference of two measures of a mesh, relative to its size, up to which they are the same."""
 PLACEMENT = ("position", "rotation", "scale")
 
 
@@ -25,6 +33,37 @@ class BodyIdentity(TypedDict):
     box_max: list[float]
     scale: NotRequired[float]
     """Only if the texture depends on it"""
+
+
+class BodyMeasures(TypedDict):
+    """Numbers by which a mesh is known again in another file of it, also with other texture coordinates."""
+
+    area: float
+    volume: float
+    centre: list[float]
+    """The mean place of its surface"""
+
+
+def measures(places: Array, corners: Indices) -> BodyMeasures:
+    """The measures of triangles, in their own units."""
+    first, second, third = np.moveaxis(places[corners], 1, 0)
+    areas = 0.5 * np.linalg.norm(np.cross(second - first, third - first), axis=1)
+    area = float(areas.sum())
+    centre = areas @ ((first + second + third) / 3.0) / area
+    return {"area": area, "volume": abs(volume_of(places, corners)), "centre": centre.tolist()}
+
+
+def has_measures(noted: Mapping[str, Any], places: Array, corners: Indices) -> bool:
+    """Whether triangles have the measures of a JSON file, but for the rounding of file formats; true without any."""
+    own = measures(places, corners)
+    length = math.sqrt(own["area"])
+    units = {"area": length**2, "volume": length**3, "centre": length}
+    return all(
+        np.shape(noted[key]) == np.shape(own[key])  # type: ignore[literal-required]
+        and bool((np.abs(np.subtract(noted[key], own[key])) <= SAME * unit).all())  # type: ignore[literal-required]
+        for key, unit in units.items()
+        if key in noted
+    )
 
 
 def identity(geometry: Geometry, scaled: bool) -> BodyIdentity:
@@ -42,11 +81,6 @@ def identity(geometry: Geometry, scaled: bool) -> BodyIdentity:
 def key(geometry: Geometry) -> str:
     """A digest of a shape in object space: of the contents of its files and not of their paths."""
     return cache.digest(repr(_shape(geometry)).encode())[:16]
-
-
-def mesh_key(content: bytes) -> str:
-    """The key of a mesh by the content of its file."""
-    return cache.digest(repr(("Mesh", [], cache.digest(content))).encode())[:16]
 
 
 def name(geometry: Geometry) -> str:

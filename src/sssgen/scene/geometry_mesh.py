@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.scene.mesh_distance import is_inside_out
+from sssgen.scene.mesh_repair import has_inside
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
@@ -42,7 +44,7 @@ def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, In
     else:
         reach = geometry.reach if isinstance(geometry, Distance) else _radius(geometry)
         vertices, faces = _level(geometry.distance, reach, resolution)
-    if _volume(vertices, faces) < 0.0:
+    if is_inside_out(vertices, faces):
         faces = faces[:, ::-1]
     matrix = geometry.to_world()
     return vertices @ matrix[:3, :3].T + matrix[:3, 3], np.ascontiguousarray(faces)
@@ -160,23 +162,9 @@ def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -
     return np.where(closer[:, None], points, vertices)
 
 
-def _volume(vertices: Array, faces: Indices) -> float:
-    first, second, third = np.moveaxis(vertices[faces], 1, 0)
-    return float(np.einsum("nc,nc->", first, np.cross(second, third)) / 6.0)
-
-
 def is_closed(mesh: Mesh) -> bool:
     """Whether each edge has equally many triangles in both directions: the mesh has an inside."""
     return has_inside(mesh.triangles.corners)
-
-
-def has_inside(faces: Indices) -> bool:
-    """The same of triangles (f, 3) whose vertices at one place are one vertex."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    count = int(faces.max()) + 1
-    forward = edges[:, 0] * count + edges[:, 1]
-    backward = edges[:, 1] * count + edges[:, 0]
-    return np.array_equal(np.sort(forward), np.sort(backward))
 
 
 def _check_closed(mesh: Mesh) -> None:

@@ -14,6 +14,7 @@ from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.mesh_distance import MeshDistance, is_inside_out, rim_length
 from sssgen.scene.mesh_rays import MeshRays
+from sssgen.scene.mesh_repair import flipped, welded
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -26,7 +27,7 @@ SMALLEST = 1e-6
 
 
 class Triangles(NamedTuple):
-    """A mesh for intersections; vertices at the same position are merged."""
+    """A mesh for intersections; vertices at the same position are merged, and neighbours face the same way."""
 
     places: Array
     """(v, 3)"""
@@ -48,6 +49,8 @@ class Triangles(NamedTuple):
     """(f, 3, 4): linear colours with their opacity, or None"""
     own_normals: Array | None = None
     """(f, 3, 3): those of the file, unit; 0 where it has none; or None"""
+    turned: int = 0
+    """How many triangles were turned, so that neighbours face the same way"""
 
     def corner_normals(self, face: npt.NDArray[Any]) -> Array:
         """The normals at the corners of triangles, (n, 3, 3): those of the file, or else smooth ones."""
@@ -156,12 +159,12 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     own_normals = _usable(own_normals, (len(vertices), 3))
     # a file may have vertices that belong to no triangle
     used = np.flatnonzero(np.bincount(faces.ravel(), minlength=len(vertices)))
-    places, place_of = np.unique(vertices[used], axis=0, return_inverse=True)
+    number = np.zeros(len(vertices), np.int64)
+    number[used] = np.arange(len(used))
+    places, place_of = welded(vertices[used], number[faces])
     if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
         raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
-    number = np.zeros(len(vertices), np.int64)
-    number[used] = place_of.reshape(-1)
-    corners = number[faces]
+    corners = place_of[number[faces]]
     first, second, third = np.moveaxis(places[corners], 1, 0)
     across = np.cross(second - first, third - first)
     area = np.linalg.norm(across, axis=1)
@@ -169,11 +172,17 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
         raise failure("no triangle has an area", "", shown)
     valid = area > 0.0
     faces, corners, across = faces[valid], corners[valid], across[valid]
+    if (turned := flipped(corners, area[valid])).any():
+        faces, corners = (np.where(turned[:, None], rows[:, ::-1], rows) for rows in (faces, corners))
+        across = np.where(turned[:, None], -across, across)
     sums = [np.bincount(corners.ravel(), np.repeat(across[:, axis], 3), len(places)) for axis in range(3)]
     normals: Array = np.stack(sums, axis=1).astype(np.float64)
     own = None if own_normals is None else unit(own_normals)
-    further = [None if values is None else values[faces] for values in (uv2, color, own)]
-    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), *further)
+    uv2, color, own_normals = (None if values is None else values[faces] for values in (uv2, color, own))
+    mesh = Triangles(
+        places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), uv2, color, own_normals,
+        int(turned.sum()),
+    )  # fmt: skip
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
 
 

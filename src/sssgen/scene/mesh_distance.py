@@ -11,10 +11,20 @@ from sssgen.support.extras import need
 INSIDE = 0.5
 """The winding number above which a point is inside; a half also closes the holes of an open mesh."""
 
+FLAT = 1e-9
+"""The volume over the cube of the box's diagonal up to which a mesh has none."""
+
 MIXED = (
     "neighbouring triangles face opposite directions, so that the inside is not well defined: make their normals agree"
 )
 """The warning for triangles with `mixed_sides`."""
+
+
+def turned_text(number: int) -> str:
+    """That so many triangles disagree with their neighbours, as text."""
+    if number == 1:
+        return "1 triangle faces the other way than its neighbours"
+    return f"{number} triangles face the other way than their neighbours"
 
 
 class MeshDistance:
@@ -56,8 +66,19 @@ class MeshDistance:
 
 def is_inside_out(places: Array, corners: npt.NDArray[np.int64]) -> bool:
     """Whether the triangles enclose a negative volume, relative to their centre."""
+    return volume_of(places, corners) < 0.0
+
+
+def volume_of(places: Array, corners: npt.NDArray[np.int64]) -> float:
+    """The volume between the triangles and their centre, negative where most face it."""
     first, second, third = np.moveaxis(places[corners] - places.mean(axis=0), 1, 0)
-    return bool(np.einsum("nc,nc->", first, np.cross(second, third)) < 0.0)
+    return float(np.einsum("nc,nc->", first, np.cross(second, third))) / 6.0
+
+
+def is_sheet(places: Array, corners: npt.NDArray[np.int64]) -> bool:
+    """Whether the triangles enclose no volume: all are in a plane, or the two sides of a sheet are one."""
+    size = float(np.linalg.norm(np.ptp(places[corners.ravel()], axis=0)))
+    return abs(volume_of(places, corners)) <= FLAT * size**3
 
 
 def rim_length(places: Array, corners: npt.NDArray[np.int64]) -> float:

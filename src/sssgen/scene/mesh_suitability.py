@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,9 +9,21 @@ import numpy.typing as npt
 
 from sssgen.scene.arrays import Array
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.mesh_distance import INSIDE, MIXED, MeshDistance, mixed_sides, open_edges
+from sssgen.scene.mesh_distance import (
+    INSIDE,
+    MIXED,
+    MeshDistance,
+    is_inside_out,
+    is_sheet,
+    mixed_sides,
+    open_edges,
+    turned_text,
+)
+from sssgen.scene.mesh_repair import has_inside
 from sssgen.support.extras import need
 
+_SHEETS = "choose the quality fast, or the preset leaf or paper"
+"""What to do with a mesh that is no body."""
 FEW_PATHS = 1.0
 """The mean chord in mean free paths below which light passes a body almost without scattering."""
 MOST_SHELLS = 64
@@ -29,23 +40,36 @@ class MeshNeeds(NamedTuple):
     paths: float | None = None
     """The mean chord of the body in mean free paths of its medium, where light inside is computed at one point or few;
     None where it is traced, or where nothing scatters"""
+    written: str = ""
+    """The file that the mesh is written to as it is here, where engines do not get the user's own"""
 
 
 def mesh_warnings(mesh: Mesh, needs: MeshNeeds) -> list[str]:
     """Warnings for people, the gravest first. Raises SssgenError for a mesh that cannot be read."""
     places, corners = mesh.triangles.places, mesh.triangles.corners
-    messages = []
-    if needs.inside:
+    messages = _mended(mesh, needs)
+    shells = _shells(corners) if needs.inside else []
+    if shells and all(is_sheet(places, shell) for shell in shells[:MOST_SHELLS]):
+        messages.append(f"the mesh encloses no volume, and light inside needs a body: {_SHEETS}")
+    elif needs.inside:
         messages += _holes(corners)
         if mixed_sides(corners):
             messages.append(MIXED)
-        messages += _nested_shells(places, corners)
-    if mesh.inside_out:
-        messages.append("the mesh is inside out: its normals are reversed here; reverse them in the file for engines")
+        messages += _parts(mesh, shells)
     if needs.textures and mesh.triangles.uv is None:
         reading = ", ".join(needs.textures)
         messages.append(f"the mesh has no texture coordinates, and {reading} reads a texture: unwrap the mesh")
     return messages + ([] if needs.paths is None else size_warnings(needs.paths))
+
+
+def _mended(mesh: Mesh, needs: MeshNeeds) -> list[str]:
+    """What is drawn otherwise than the file has it."""
+    place = f"here and in {needs.written}" if needs.written else "here; do so in the file for engines"
+    turned = mesh.triangles.turned
+    messages = [f"{turned_text(turned)}: turned {place}"] if turned else []
+    if mesh.inside_out and (needs.inside or mesh.closed):  # of a sheet there is no inside
+        messages.append(f"the mesh is inside out: all its triangles are turned {place}")
+    return messages
 
 
 def _holes(corners: npt.NDArray[np.int64]) -> list[str]:
@@ -53,30 +77,40 @@ def _holes(corners: npt.NDArray[np.int64]) -> list[str]:
     if not count:
         return []
     edges = f"{count} open edge{'s' if count > 1 else ''}"
-    return [f"the mesh has holes ({edges}): light inside needs a closed body, and is wrong near them"]
+    return [
+        f"the mesh has holes ({edges}): light inside needs a closed body, and is wrong near them; close them, or for a "
+        f"sheet {_SHEETS}"
+    ]
 
 
-def _nested_shells(places: Array, corners: npt.NDArray[np.int64]) -> list[str]:
-    shells = list(_shells(corners))
-    inner = _count_inside(places, shells[:MOST_SHELLS])
-    if not inner:
-        return []
-    parts = f"{inner} of the mesh's {len(shells)} parts {'are' if inner > 1 else 'is'} inside another"
-    return [f"{parts}: lengths inside the body are wrong there; make one surface of them, or delete the inner ones"]
+def _parts(mesh: Mesh, shells: list[npt.NDArray[np.int64]]) -> list[str]:
+    """The warnings for parts inside each other, and for closed parts that are inside out where others are not."""
+    places = mesh.triangles.places
+    messages, inside = [], _inside_others(places, shells[:MOST_SHELLS])
+    if inner := int(inside.sum()):
+        messages.append(
+            f"{_of_parts(inner, len(shells))} inside another: lengths inside the body are wrong there; make one "
+            "surface of them, or delete the inner ones"
+        )
+    alone = [shell for shell, is_inner in zip(shells, inside, strict=False) if not is_inner and has_inside(shell)]
+    if reversed_parts := sum(is_inside_out(places, shell) != mesh.inside_out for shell in alone):
+        messages.append(f"{_of_parts(reversed_parts, len(shells))} inside out: turn the triangles in the file")
+    return messages
 
 
-def _shells(corners: npt.NDArray[np.int64]) -> Iterable[npt.NDArray[np.int64]]:
+def _of_parts(number: int, all_parts: int) -> str:
+    return f"{number} of the mesh's {all_parts} parts {'are' if number > 1 else 'is'}"
+
+
+def _shells(corners: npt.NDArray[np.int64]) -> list[npt.NDArray[np.int64]]:
     """The triangles of each connected part, the largest first."""
     number = np.asarray(need("igl", "libigl").facet_components(corners)[1]).ravel()
-    sizes = np.bincount(number)
-    for part in np.argsort(-sizes, kind="stable"):
-        yield corners[number == part]
+    ends = np.cumsum(np.bincount(number))[:-1]
+    return sorted(np.split(corners[np.argsort(number, kind="stable")], ends), key=len, reverse=True)
 
 
-def _count_inside(places: Array, shells: list[npt.NDArray[np.int64]]) -> int:
-    """The number of shells of which a corner is inside another one."""
-    if len(shells) < 2:
-        return 0
+def _inside_others(places: Array, shells: list[npt.NDArray[np.int64]]) -> npt.NDArray[np.bool_]:
+    """The shells (s,) of which a corner is inside another one."""
     points = np.array([places[shell[0, 0]] for shell in shells])
     low, high = (np.array([ends(places[shell.ravel()], axis=0) for shell in shells]) for ends in (np.min, np.max))
     inside = np.zeros(len(shells), np.bool_)
@@ -87,7 +121,7 @@ def _count_inside(places: Array, shells: list[npt.NDArray[np.int64]]) -> int:
             used, renamed = np.unique(shell, return_inverse=True)
             solid = MeshDistance(places[used], renamed.reshape(shell.shape))
             inside[near] |= solid.winding_number(points[near]) > INSIDE
-    return int(inside.sum())
+    return inside
 
 
 def size_warnings(paths: float) -> list[str]:
@@ -96,5 +130,5 @@ def size_warnings(paths: float) -> list[str]:
         return []
     return [
         f"the body is {paths:.2g} mean free paths thick: light passes it almost unscattered, and edges of its far "
-        "side can be seen; make it larger, or bake its light"
+        f"side can be seen; make it larger, or bake its light (the quality best); for a sheet {_SHEETS}"
     ]

@@ -75,7 +75,7 @@ def projection_of(scene: MeasuredScene, voxels: int) -> Projection:
     shape = grid.voxels, PARTS**3
     projection = Projection(grid, inside_shares(distances, cell).reshape(shape), points.reshape(*shape, 3))
     if not projection.counting.any() or not (distances < 0.0).any():
-        raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
+        raise failure("no voxel is inside the body", "make it thicker or close it, or use more voxels")
     return projection
 
 

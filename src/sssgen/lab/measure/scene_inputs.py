@@ -236,7 +236,7 @@ def _view(scene: MeasuredScene, light: Light) -> LightView:
 
 @lru_cache(8)
 def _depth_layers(scene: MeasuredScene, light: Light) -> Array:
-    """The distances of three surfaces from the light's plane, (DEPTH_MAP, DEPTH_MAP, 3)."""
+    """The distances of four surfaces from the light's plane, (DEPTH_MAP, DEPTH_MAP, 4)."""
     geometry, view = scene.geometry, _view(scene, light)
     to_object = geometry.to_object()
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
@@ -245,5 +245,5 @@ def _depth_layers(scene: MeasuredScene, light: Light) -> Array:
     filled = (inside[..., 1] > inside[..., 0])[..., None]
     parts = np.sort(np.where(filled, inside, np.inf), axis=1) * geometry.scale * view.slopes[:, None, None]
     parts = np.pad(parts, ((0, 0), (0, 2), (0, 0)), constant_values=np.inf)
-    layers = np.stack([parts[:, 0, 0], parts[:, 0, 1], parts[:, 1, 0]], axis=1)
-    return np.where(np.isfinite(layers), layers, view.far).reshape(DEPTH_MAP, DEPTH_MAP, 3)
+    layers = parts[:, :2].reshape(len(parts), 4)
+    return np.where(np.isfinite(layers), layers, view.far).reshape(DEPTH_MAP, DEPTH_MAP, 4)

@@ -44,8 +44,8 @@ export class Pane {
 
   /** The digests that the picture needs. */
   get named() {
-    const textures = this.picture?.textures ?? [];
-    return [this.picture?.body, ...textures.flatMap((texture) => texture.texels?.levels.map((level) => level.data) ?? [])];
+    const texels = [this.picture?.environment, ...(this.picture?.textures ?? []).map((texture) => texture.texels)];
+    return [this.picture?.body, ...texels.flatMap((one) => one?.levels.map((level) => level.data) ?? [])];
   }
 
   /** Shows a message; returns why it cannot be drawn, or ''.

@@ -44,6 +44,8 @@ export class Stage {
     this.textures = new Map();  // by the digests of their levels
     /** @type {Settings} */
     this.settings = PLAIN;
+    /** @type {THREE.Texture | null} */
+    this.sceneLight = null;  // from all around
     this.angle = 0;  // by which the body is turned, in radians
     this.model = new THREE.Matrix4();  // of the body that is not turned
     /** @type {string[]} */
@@ -106,8 +108,9 @@ export class Stage {
   /** Shows a picture; `values` are the numbers that differ from the file's.
    * @param {BodyPicture} picture @param {import('../page_messages.js').Values} values */
   async show(picture, values) {
-    const [body, ...filled] = await Promise.all([
+    const [body, panorama, ...filled] = await Promise.all([
       this.pieceOf(picture.body),
+      picture.environment ? this.textureOf(picture.environment) : null,
       ...picture.textures.map(async ({ property, texels }) => (texels ? [[property, await this.textureOf(texels)]] : [])),
     ]);
     /** @type {Record<string, THREE.Texture>} */
@@ -120,7 +123,9 @@ export class Stage {
       if (picture.two_sided) material.side = THREE.DoubleSide;
     }
     this.program = program;
-    this.forget(new Set(Object.values(textures)));
+    if (panorama) panorama.mapping = THREE.EquirectangularReflectionMapping;
+    this.sceneLight = panorama;
+    this.forget(new Set([...(panorama ? [panorama] : []), ...Object.values(textures)]));
     this.place(picture, body, material);
     this.lamps.show(picture);
     this.arrange(this.settings);

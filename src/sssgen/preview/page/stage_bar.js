@@ -14,7 +14,7 @@ import { VIEWS } from './views.js';
 /** @typedef {{ stages: () => Stage[], shown: () => Stage | null, say: (text: string) => void, save: (lights: import('../page_messages.js').Light[]) => void }} Page
  *   The stages with a body; the one whose controls are shown; `save` writes lamps into the scene. */
 
-const KINDS = { none: 'lamps only', studio: 'studio', sky: 'clear sky', file: 'file…' };
+const KINDS = { none: 'the scene', studio: 'studio', sky: 'clear sky', file: 'file…' };
 const LARGEST = 256 << 20;  // bytes of a panorama
 
 /** The bar, and the settings of all stages. */
@@ -25,6 +25,7 @@ export class StageBar {
     this.page = page;
     /** @type {import('./stage.js').Settings} */
     this.settings = { ...PLAIN, light: { ...PLAIN.light } };
+    this.sceneLit = false;  // by surroundings of its own
     this.turning = 0;  // the frame that was requested
     this.speed = 6;  // turns in a minute
     this.lampSheet = make('div');
@@ -57,6 +58,8 @@ export class StageBar {
     this.root.hidden = !stage;
     if (!stage) return;
     stage.lamps.moved = () => this.lit(stage);
+    this.sceneLit = Boolean(stage.sceneLight);
+    this.press();
     this.listLamps(stage);
   }
 
@@ -97,7 +100,7 @@ export class StageBar {
     const { tools, settings } = this;
     tools.surroundings.classList.toggle('on', settings.light.kind !== 'none');
     for (const [tool, on] of /** @type {const} */ ([[tools.ground, settings.ground], [tools.turntable, Boolean(this.turning)]])) tool.setAttribute('aria-pressed', String(on));
-    this.sliders?.classList.toggle('unused', settings.light.kind === 'none');
+    this.sliders?.classList.toggle('unused', settings.light.kind === 'none' && !this.sceneLit);
   }
 
   surroundingsSheet() {

@@ -12,7 +12,7 @@ const SIDE = 256;  // of the studio's cube, in texels
 const STUDIO_LEVEL = 0.3;  // three's room is brighter than the lamps of a scene
 
 /** @typedef {{ kind: string, panorama: THREE.DataTexture | null, strength: number, turn: number, background: boolean, blur: number }} Light
- *   `kind`: `none`, `studio`, `sky` or `file`; `turn` in degrees; `blur` 0 to 1. */
+ *   `kind`: `none` (what the scene has), `studio`, `sky` or `file`; `turn` in degrees; `blur` 0 to 1. */
 
 /** The light around the scene of a stage. */
 export class Surroundings {
@@ -26,7 +26,7 @@ export class Surroundings {
   /** @param {Light} light */
   show({ kind, panorama, strength, turn, background, blur }) {
     const { scene } = this.stage;
-    const texture = { studio: () => this.studioTexture(), sky: skyTexture, file: () => panorama }[kind]?.() ?? null;
+    const texture = { none: () => this.stage.sceneLight, studio: () => this.studioTexture(), sky: skyTexture, file: () => panorama }[kind]?.() ?? null;
     const angle = THREE.MathUtils.degToRad(turn);
     const level = strength * (kind === 'studio' ? STUDIO_LEVEL : 1);
     scene.environment = texture;

@@ -81,9 +81,12 @@ def _texture(name: str, raw: str | dict[str, Any], beside: Path, srgb: bool) -> 
 def texture(path: str, wrap: str = "repeat", filter: str = "linear", srgb: bool = False) -> Texture:
     """A texture from a file; the lowest row of a .png or .exr is at v = 0, the first one of others. Raises SssgenError.
 
-    With `srgb` the colours of a .png are decoded to linear light, as an engine's sRGB textures are.
+    With `srgb` the colours of a .png are decoded to linear light, as an engine's sRGB textures are. A grey .png, and
+    any grey picture of colours, has three equal channels, as in engines.
     """
     data = images.read(path)
+    if data.shape[-1] < 3 and (srgb or path.lower().endswith(".png")):
+        data = np.concatenate([np.repeat(data[..., :1], 3, axis=-1), data[..., 1:]], axis=-1)
     if srgb and path.lower().endswith(".png"):
         data = np.concatenate([images.decode_srgb(data[..., :3]), data[..., 3:]], axis=-1)
     picture = path.lower().endswith((".png", ".exr"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
     """Raises SssgenError if a texture is baked for another shape, or for another scale, than the scene's."""
     body = sidecar.facts.get("body")
     if not isinstance(body, dict):
-        _check_triangles(sidecar, geometry, name)
+        _check_mesh(sidecar, geometry, name)
         return
     if "key" in body and body["key"] != body_identity.key(geometry):
         raise _other_shape(body, geometry, name)
@@ -39,22 +39,25 @@ def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
         )
 
 
-def _check_triangles(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
-    """Raises SssgenError if a thickness map is baked for a mesh with another number of triangles."""
+def _check_mesh(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
+    """Raises SssgenError if a thickness map is baked for another mesh; older JSONs have its number of triangles alone,
+    and no area, volume and centre."""
     mesh = sidecar.facts.get("mesh")
-    if (
-        sidecar.kind != "thickness"
-        or not isinstance(mesh, dict)
-        or not isinstance(geometry, Mesh)
-        or not isinstance(mesh.get("triangles"), int)
-    ):
+    if sidecar.kind not in ("thickness", "transmittance") or not isinstance(mesh, dict):
         return
-    own = len(geometry.triangles.corners)
-    if mesh.get("triangles", own) != own:
+    if not isinstance(geometry, Mesh):
+        return
+    triangles, own_name = geometry.triangles, body_identity.name(geometry)
+    count, own = mesh.get("triangles"), len(triangles.corners)
+    if isinstance(count, int) and count != own:
         raise failure(
-            f"'{name}' is baked for a mesh of {mesh['triangles']} triangles; {body_identity.name(geometry)} has {own}",
-            "bake it for the scene's mesh",
+            f"'{name}' is baked for a mesh of {count} triangles; {own_name} has {own}", "bake it for the scene's mesh"
         )
+    if not body_identity.has_measures(mesh, triangles.places, triangles.corners):
+        raise failure(
+            f"'{name}' is baked for another mesh than {own_name}, or for an older version of it: its triangles are "
+            "elsewhere", "bake it for the scene's mesh"
+        )  # fmt: skip
 
 
 def _other_shape(body: Mapping[str, Any], geometry: Geometry, name: str) -> Exception:
@@ -83,18 +86,23 @@ def check_lights(sidecar: BakeFile, geometry: Geometry, lights: Iterable[Light],
     """
     if sidecar.kind != "fluence":
         return
-    to_object = geometry.to_object()
     lights = list(lights)
+    for number in lights_inside(geometry, lights):
+        raise failure(
+            f"'{name}' is baked for lights from afar, and light {number} is inside the body",
+            "move the light out, or use a technique that needs no baked light",
+        )
+    _check_direction(sidecar, geometry.to_object()[:3, :3], lights, name)
+
+
+def lights_inside(geometry: Geometry, lights: Iterable[Light]) -> Iterator[int]:
+    """The numbers, from 1, of the lights that are inside a body."""
+    to_object = geometry.to_object()
     for number, light in enumerate(lights, 1):
-        if light.position is None:
-            continue
-        place = (to_object[:3, :3] @ np.array(light.position) + to_object[:3, 3])[None]
-        if geometry.distance(place)[0] <= 0.0:
-            raise failure(
-                f"'{name}' is baked for lights from afar, and light {number} is inside the body",
-                "move the light out, or use a technique that needs no baked light",
-            )
-    _check_direction(sidecar, to_object[:3, :3], lights, name)
+        if light.position is not None:
+            place = (to_object[:3, :3] @ np.array(light.position) + to_object[:3, 3])[None]
+            if geometry.distance(place)[0] <= 0.0:
+                yield number
 
 
 def _check_direction(sidecar: BakeFile, to_object: npt.NDArray[np.float64], lights: list[Light], name: str) -> None:

@@ -14,6 +14,9 @@ from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import Diagnostic, Reporter
 from sssgen.targets.reflection_record import Reflection
 
+BLACK = 1e-3
+"""The linear value up to which a sample is black: it is shown as 0 to 3 of 255."""
+
 
 def warnings_of(scene: Scene, reflection: Reflection, hit: Array, front: Array) -> list[Diagnostic]:
     """The warnings about a picture. `hit` is whether a sample shows the surface, `front` whether from outside."""
@@ -30,6 +33,19 @@ def warnings_of(scene: Scene, reflection: Reflection, hit: Array, front: Array) 
             place = scene.document.place("light", number, "color").value
             reporter.warn(place, "this light is black", "give it a colour, or remove it")
     return [*reporter.warnings, *_open_mesh(scene.geometry, reflection)]
+
+
+def darkness_warnings(scene: Scene, color: Array, shown: Array) -> list[Diagnostic]:
+    """The warning about a picture with black bodies. `color` (h, w, 3) is linear, `shown` (h, w) where they are."""
+    if not shown.any() or color[shown].max() > BLACK:
+        return []
+    reporter = scene.document.reporter
+    if not scene.lights and not any(scene.ambient) and "environment" not in scene.measured:
+        message, hint = "the picture is black: the scene has no light", "add [[light]], or [environment]"
+        return [Diagnostic("warning", message, Span(reporter.file, 0, 0, 0, 0), hint)]
+    span = scene.document.place("light").value
+    message, hint = "the picture is black: no light reaches what the camera sees", "move a light, or make it brighter"
+    return [Diagnostic("warning", message, span, hint, reporter.line(span))]
 
 
 def _is_seen_from_inside(scene: Scene, geometry: Geometry, hit: Array, front: Array) -> bool:

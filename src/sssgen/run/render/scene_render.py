@@ -23,16 +23,17 @@ from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.run.backend_registry import check_draws
 from sssgen.run.backends import Array, Backend
 from sssgen.run.render import pixel_mesh
+from sssgen.run.render.bake_warnings import bake_warnings
 from sssgen.run.render.environment_maps import reflection_map
 from sssgen.run.render.eye_pictures import with_eye_pictures
-from sssgen.run.render.medium_warnings import medium_warnings
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
-from sssgen.run.render.picture_warnings import warnings_of
+from sssgen.run.render.picture_warnings import darkness_warnings, warnings_of
 from sssgen.run.render.scene_values import environment_of, shell_of
 from sssgen.run.render.screen_window import Window, whole_window, window_of
 from sssgen.run.render.several_bodies import Body, Canvas, in_order
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
+from sssgen.run.render.texture_warnings import texture_warnings
 from sssgen.scene.geometry import Hits
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.scene.pictures.resizing import resized
@@ -112,8 +113,19 @@ def render(
         hit = front = np.ones((height, width), bool)
     else:
         samples, hit, front = _surface(scene, compiled, shell, backend, (width, height), progress)
-    warnings = [*warnings_of(scene, reflection, hit, front), *medium_warnings(scene, material, reflection)]
-    return _develop(scene, reflection, samples, hit)._replace(warnings=warnings)
+    color, cover = _checked(reflection, samples, hit)
+    warnings = _warnings(scene, material, reflection, hit, front)
+    warnings += darkness_warnings(scene, color * cover[..., None], hit)
+    return _develop(scene, color, cover)._replace(warnings=warnings)
+
+
+def _warnings(scene: Scene, material: Material, reflection: Reflection, hit: Array, front: Array) -> list[Diagnostic]:
+    """What is doubtful of the picture of a body."""
+    return [
+        *warnings_of(scene, reflection, hit, front),
+        *texture_warnings(scene, material, reflection),
+        *bake_warnings(scene, material, reflection),
+    ]
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
@@ -176,7 +188,7 @@ def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progre
             raise MissingTextures(missing)
         if compiled.reflection["raymarched"]:
             raise failure(f"{material.name} marches its own rays: it is drawn alone", "", part.document.reporter.file)
-        bodies.append(Body(part, compiled, values))
+        bodies.append(Body(part, material, compiled, values))
     warnings: list[Diagnostic] = []
     for number, body in enumerate(in_order(bodies, scene.camera)):
         progress(number, len(bodies), f"drawing {body.compiled.reflection['material']}")
@@ -188,8 +200,9 @@ def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progre
             continue
         color, cover = _checked(body.compiled.reflection, _shade_mesh(backend, body.compiled, mesh), mesh.hit)
         canvas.draw(body, window, color, cover, mesh.distance)
-        noted = warnings_of(body.scene, body.compiled.reflection, mesh.hit, mesh.front)
+        noted = _warnings(body.scene, body.material, body.compiled.reflection, mesh.hit, mesh.front)
         warnings += [warning for warning in noted if warning not in warnings]  # those of lights are of all bodies
+    warnings += darkness_warnings(scene, canvas.color, canvas.covered)
     linear = canvas.tone_mapped(scene.shell) * scene.exposure
     return RenderedPicture(
         _average(_without_border(linear), scene.samples)[::-1],
@@ -271,17 +284,17 @@ def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 
-def _develop(scene: Scene, reflection: Reflection, samples: Array, hit: Array) -> RenderedPicture:
+def _develop(scene: Scene, color: Array, cover: Array) -> RenderedPicture:
     """Composites samples over the background, averages them to pixels, and flips rows so that row 0 is at the top."""
-    height, width = hit.shape
-    color, cover = _checked(reflection, samples, hit)
-    exposed = np.where(hit[..., None], color, 0.0) * scene.exposure
+    height, width = cover.shape
+    exposed = color * scene.exposure
     mixed = exposed * cover[..., None] + backdrop(scene, (width, height)) * (1.0 - cover[..., None])
     return RenderedPicture(_average(mixed, scene.samples)[::-1], _average(cover[..., None], scene.samples)[::-1, :, 0])
 
 
 def _checked(reflection: Reflection, samples: Array, hit: Array) -> tuple[Array, Array]:
-    """The linear colours (height, width, 3) of samples, and how much each covers. Raises SssgenError for NaN."""
+    """The linear colours (height, width, 3) of samples, and how much each covers, both 0 beside the body. Raises
+    SssgenError for NaN."""
     color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)
     if reflection["color"] == "encoded":
         color = decode_srgb(color)
@@ -292,7 +305,7 @@ def _checked(reflection: Reflection, samples: Array, hit: Array) -> tuple[Array,
             "a guard is missing: find the operation with sssgen eval",
         )
     solid = {"opaque": np.ones_like(alpha), "mask": (alpha > 0.0).astype(float), "blend": np.clip(alpha, 0.0, 1.0)}
-    return color, np.where(hit, solid[reflection["alpha_mode"]], 0.0)
+    return np.where(hit[..., None], color, 0.0), np.where(hit, solid[reflection["alpha_mode"]], 0.0)
 
 
 def backdrop(scene: Scene, size: tuple[int, int]) -> Array:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.ir.frame_passes import BEHIND
+from sssgen.material.model import Material
 from sssgen.material.shell_stages import NONE
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run import backends
@@ -29,6 +30,7 @@ class Body(NamedTuple):
     """A body with its shader and the values of it."""
 
     scene: Scene
+    material: Material
     compiled: Compiled
     shell: Shell
 

@@ -39,7 +39,8 @@ func light_file() -> String:
 	return ""
 
 
-## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`.
+## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`,
+## `size`.
 func passes() -> Array[Dictionary]:
 	return []
 
@@ -54,6 +55,8 @@ func _enter_tree() -> void:
 	for data in passes():
 		if data["seen_from"] == "inside":
 			_pictures.append(InnerLight.new(data, _light_file()))
+		elif data["name"] == "scene_behind":
+			_pictures.append(Behind.new(data))
 		else:
 			_pictures.append(Picture.new(self, data, _casters))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
@@ -139,7 +142,7 @@ func _reads(shader: Shader) -> bool:
 	if shader == null:
 		return false
 	var names := shader.get_shader_uniform_list().map(func(uniform): return uniform["name"])
-	return _pictures.any(func(picture): return picture.data["texture"] in names)
+	return _pictures.any(func(picture: Pass): return picture.is_read_by(names))
 
 
 ## The lights that shine on the body.
@@ -191,6 +194,10 @@ class Pass:
 	## What the pass draws; null where it cannot draw.
 	func texture() -> Texture:
 		return null
+
+	## Whether a shader with uniforms of these names reads the picture.
+	func is_read_by(names: Array) -> bool:
+		return data["texture"] in names
 
 	func take(material: ShaderMaterial) -> void:
 		var given: Variant = material.get_shader_parameter(data["texture"])

@@ -394,6 +394,8 @@ export class Passes extends RenderTargetTexture {
     const response = this.#responses.loaded(pass.texture), { values, pictures } = this.#bodyOf(mesh);
     if (pictures[pass.name]?.response !== response) {
       pictures[pass.name]?.dispose();
+      const { minimum, maximum } = mesh.getRawBoundingInfo();
+      response?.checkBody(minimum.asArray(), maximum.asArray());
       pictures[pass.name] = response && new InnerVolume(response, this.#scene);
     }
     pictures[pass.name]?.follow(mesh, this.#material);

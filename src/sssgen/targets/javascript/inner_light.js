@@ -60,6 +60,7 @@ export class LightResponse {
     this.low = facts.box_min;
     this.high = facts.box_max;
     this.size = facts.box_max.map((value, axis) => value - this.low[axis]);
+    this.body = facts.body;
     const [depth, height, width] = facts.arrays.nearest.shape;
     /** The texels of the volume. */
     this.width = width;
@@ -90,6 +91,18 @@ export class LightResponse {
     this.halves = new Uint16Array(this.count);
     this.row = new Float32Array(3 * (1 + this.rank));
     this.mix = { way: new Float64Array(3), texels: new Int32Array(4), weights: new Float64Array(4) };
+  }
+
+  /**
+   * Warns of a mesh that is not the one of the bake: the light inside is then wrong.
+   * @param {ArrayLike<number>} low the corners of its box, in object space @param {ArrayLike<number>} high
+   */
+  checkBody(low, high) {
+    if (!this.body?.box_min) return;
+    const { name, box_min: from, box_max: to } = this.body, longest = Math.max(...to.map((value, axis) => value - from[axis]));
+    const isOther = from.some((value, axis) => Math.max(Math.abs(low[axis] - value), Math.abs(high[axis] - to[axis])) > 0.01 * longest);
+    const text = (corner) => `(${Array.from(corner, (value) => Number(value.toPrecision(3))).join(', ')})`;
+    if (isOther) console.warn(`the light inside is baked for another body: ${name} is from ${text(from)} to ${text(to)}, this mesh from ${text(low)} to ${text(high)}; bake it for this mesh`);
   }
 
   /** The parameters of the technique, by the properties of materials: where an engine has the name itself, it begins with `sss`. */

@@ -187,6 +187,8 @@ class Body {
     const before = this.#volumes.get(pass.name);
     if (before?.texels.response === response) return before;
     before?.texture.destroy();
+    const { aabb } = internalsOf(this.instance).mesh;
+    response.checkBody(aabb.getMin().toArray(), aabb.getMax().toArray());
     const volume = new InnerVolume(device, pass.name, response);
     this.#volumes.set(pass.name, volume);
     return volume;

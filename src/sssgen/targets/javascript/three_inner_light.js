@@ -177,6 +177,8 @@ export class InnerLight {
     const before = this.#volumes.get(object);
     if (before && before.texels.response === response) return before;
     before?.texture.dispose();
+    if (!object.geometry.boundingBox) object.geometry.computeBoundingBox();
+    response.checkBody(...[object.geometry.boundingBox.min, object.geometry.boundingBox.max].map((corner) => corner.toArray()));
     const texels = new InnerTexels(response);
     const texture = new THREE.Data3DTexture(texels.data, response.width, response.height, response.depth);
     Object.assign(texture, { format: THREE.RGBAFormat, type: THREE.HalfFloatType, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter });

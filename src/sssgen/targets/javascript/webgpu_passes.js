@@ -252,8 +252,12 @@ class Passes {
   #drawInside(name, body, lights, ambient, { textures, samplers, values }) {
     const response = this.responses.loaded(name);
     if (!response) return;
-    const volume = this.#volumes.get(body) ?? new InnerTexture(this.device, response);
-    this.#volumes.set(body, volume);
+    if (!this.#volumes.has(body)) {
+      const [low, high] = body.box;
+      response.checkBody(low, high);
+      this.#volumes.set(body, new InnerTexture(this.device, response));
+    }
+    const volume = /** @type {InnerTexture} */ (this.#volumes.get(body));
     const parameters = volume.follow(body.model, lights, ambient);
     textures[this.names[name]] = volume.texture;
     samplers[this.names[name]] = this.samplers[1];

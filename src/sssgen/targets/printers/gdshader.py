@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.frame_passes import BEHIND, pass_name
 from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components, kind_of
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.glsl import GlslPrinter
@@ -88,6 +89,8 @@ class GodotPrinter(GlslPrinter):
     def texture_hints(self, texture: ir.Uniform) -> list[str]:
         """What a texture holds, its default, and how it is sampled: as in its import settings."""
         assert isinstance(texture.type, Sampler)
+        if pass_name(texture) == BEHIND:  # the engine draws such a body behind the others, and fills the picture
+            return ["hint_screen_texture", "filter_linear_mipmap", "repeat_disable"]
         default = next((text for name, text in _DEFAULTS.items() if has_hint(texture, name)), "hint_default_white")
         settings = import_of(texture)
         hints = ["source_color"] if has_hint(texture, "source_color") else []
