@@ -35,6 +35,18 @@ from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import scene_loading
 from surroundings_cases import check_surroundings
 
+LEVEL = """[material]
+name = "level"
+[[surface]]
+technique = "base_color"
+tint = [0.0, 0.0, 0.0, 1.0]
+[[surface]]
+technique = "pbr_constants"
+surface_roughness = 0.3
+[[surface]]
+technique = "specular_level"
+dielectric_specular = {level}
+"""
 BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
 
@@ -173,6 +185,19 @@ def test_light_of_the_surroundings_comes_through(three: EnginePage, tmp_path: Pa
     check_surroundings(
         three, "threejs", BLACK, {"hemisphere": 1.0 / 255.0, "probe": 1.0 / 255.0, "environment": 0.03}, tmp_path
     )
+
+
+def test_what_reflects_nothing_is_no_mirror_from_the_side(three: EnginePage, tmp_path: Path) -> None:
+    """Where the specular level is 0, three's material reflects nothing; at 2 %, all light from the side."""
+    mesh = mesh_of("wax_mouse")
+    bare = dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0))
+    pictures = []
+    for level in (0.0, 0.25):
+        path = tmp_path / f"level_{level}.toml"
+        path.write_text(LEVEL.format(level=level), encoding="utf-8")
+        compiled = sssgen.compile(str(path), "threejs")
+        pictures.append(page_values.shade(compiled, bare, three, mesh.size, mesh.points)[..., :3][mesh.hit])
+    assert np.abs(pictures[0]).max() < 1e-3 < 0.05 < pictures[1].max()
 
 
 def test_light_of_a_rectangle_comes_through(three: EnginePage, tmp_path: Path) -> None:

@@ -230,7 +230,8 @@ def own_standard(albedo: Array, metallic: Array, roughness: Array, reflected: An
     ndf = a**2 / (np.pi * (nh**2 * (a**2 - 1.0) + 1.0) ** 2)
     masking = 2.0 * nl * nv / ((1.0 - a) * 2.0 * nl * nv + a * (nl + nv))
     f0 = (reflected * (1.0 - metallic))[:, None] + albedo * metallic[:, None]
-    fresnel = f0 + (1.0 - f0) * ((1.0 - vh) ** 5)[:, None]
+    f90 = np.clip(51.0 * f0.mean(axis=1), metallic, 1.0)[:, None]
+    fresnel = f0 + (f90 - f0) * ((1.0 - vh) ** 5)[:, None]
     specular = fresnel * (ndf * masking / (4.0 * nl * nv))[:, None]
     diffuse = (1.0 - fresnel) * (1.0 - metallic)[:, None] * albedo / np.pi
     lit = (np.pi * nl)[:, None] * (diffuse + specular)
@@ -251,6 +252,15 @@ def test_standard_light() -> None:
     assert (result[visible].max(axis=1) > 0.01).sum() > 20
     close(result[visible], (own_standard(albedo, metallic, roughness) * COLOR)[visible], rtol=1e-9, atol=1e-12)
     assert not result[dot(N, L) <= 0.0].any()
+
+
+@pytest.mark.parametrize("specular", [0.0, 0.01, 0.02])
+def test_what_reflects_little_from_the_front_is_no_mirror_from_the_side(specular: float) -> None:
+    side = unit(np.array([[1.0, 0.0, 0.02]]))
+    values = {"N": np.array([[0.0, 0.0, 1.0]]), "V": side, "L": side * [-1.0, 1.0, 1.0], "light_color": np.ones(3)}
+    layers = {**BARE, "specular": specular, "albedo": np.zeros(3), "metallic": 0.0, "roughness": 0.3}
+    usual = technique("standard")(**values, **layers | {"specular": 0.02})
+    close(technique("standard")(**values, **layers), usual * specular / 0.02, rtol=0.03, atol=1e-12)
 
 
 def test_standard_light_under_a_clear_coat() -> None:

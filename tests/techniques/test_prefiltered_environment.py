@@ -102,6 +102,12 @@ def test_the_reflectance_of_a_dielectric_is_that_of_the_surface() -> None:
     assert levels[2] - levels[1] == pytest.approx(2.0 * (levels[1] - levels[0]), rel=1e-6)
 
 
+def test_what_reflects_nothing_is_no_mirror_from_the_side() -> None:
+    values = {"albedo": np.zeros(3), "roughness": 0.1, "V": from_angle(0.02)}
+    assert lit(specular=0.04, **values).max() > 0.5
+    close(lit(specular=0.0, **values), 0.0)
+
+
 def test_a_sheen_adds_its_light_and_takes_it_from_the_base() -> None:
     fibres = {"sheen_color": np.array([1.0, 0.0, 0.0]), "sheen_roughness": 0.5}
     V = from_angle(0.1)

@@ -229,7 +229,7 @@ const FIELDS = {
   roughness: ['float', 'roughnessNode'],
   occlusion: ['float', 'aoNode'],
   emission: ['vec3', 'emissiveNode'],
-  specular: ['float', 'specularColorNode', (specular) => TSL.materialSpecularColor.mul(specular.mul(25))],
+  specular: ['float', 'specularColorNode', (specular) => TSL.materialSpecularColor.mul(specular.mul(25).max(25 / 51))], // and specularIntensityNode
   clearcoat: ['float', 'clearcoatNode', (clearcoat) => TSL.materialClearcoat.mul(clearcoat)],
   clearcoat_roughness: ['float', 'clearcoatRoughnessNode'],
   sheen_color: ['vec3', 'sheenNode', (color) => TSL.materialSheen.mul(color)],
@@ -262,6 +262,8 @@ export function nodesOf(description, texts, uniforms) {
   for (const [name, [type, property, valueOf = (node) => node]] of Object.entries(FIELDS)) {
     if (fields.includes(name)) nodes[property] = valueOf(field(type, name));
   }
+  // what reflects less than 2 % from the front is no mirror from the side
+  if (fields.includes('specular')) nodes.specularIntensityNode = TSL.materialSpecularIntensity.mul(field('float', 'specular').mul(51).min(1));
   if (calls.translucency) {
     nodes.setupLightingModel = function (builder) {
       /** @type {any} three's types have no parameter */

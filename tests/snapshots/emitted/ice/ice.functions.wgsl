@@ -238,7 +238,9 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     // a surface reflects at most all light
     let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
-    let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    // what reflects less than 2 % from the front is no mirror from the side
+    let F90 = min(max(dot(F0, vec3f(17.0)), metallic), 1.0);
+    let F = F0 + (F90 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     let reflected = (diffuse + facets * visible * F) * NoL;
     return reflected * light_color;

@@ -271,7 +271,9 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     // a surface reflects at most all light
     float3 F0 = mix(float3(0.04), min(albedo, float3(1.0)), float3(metallic));
-    float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    // what reflects less than 2 % from the front is no mirror from the side
+    float F90 = min(max(dot(F0, float3(17.0)), metallic), 1.0);
+    float3 F = F0 + (F90 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     float3 reflected = (diffuse + facets * visible * F) * NoL;
     return reflected * light_color;

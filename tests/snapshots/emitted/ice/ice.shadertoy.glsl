@@ -299,7 +299,9 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
     // a surface reflects at most all light
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
-    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    // what reflects less than 2 % from the front is no mirror from the side
+    float F90 = min(max(dot(F0, vec3(17.0)), metallic), 1.0);
+    vec3 F = F0 + (F90 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
     vec3 reflected = (diffuse + facets * visible * F) * NoL;
     return reflected * light_color;

@@ -190,7 +190,9 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a)
     # a surface reflects at most all light
     F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
-    F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
+    # what reflects less than 2 % from the front is no mirror from the side
+    F90 = min(max(dot(F0, splat(3, 17.0)), metallic), 1.0)
+    F = F0 + (F90 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
     reflected = (diffuse + facets * visible * F) * NoL
     return reflected * light_color
