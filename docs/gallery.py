@@ -59,7 +59,7 @@ CAPTIONS = {
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
     "through the wax in a 3-D distance texture, which is computed from the geometry: the ears glow, the body stays "
     "dark. `scene_mesh.toml` in the same folder draws Blender's monkey, if you have its mesh.",
-    "ice": "Ice after Zucconi's fast subsurface scattering, from near. Voronoi facets give thickness and normals, the "
+    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the "
     "sun is behind them, light moves in the veins below; snow lies at the foot, and the edges and some holes melt.",
     "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction determines where the inlay appears: "
     "flat below the flat top, distorted below the round edges.",
@@ -91,10 +91,10 @@ ALTERNATIVE_TEXTS = {
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
-    "ice": "A sheet of cracked blue ice with the sun behind its facets, and snow at its foot",
+    "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
-    "jade_ring": "A thick ring of deep green jade with bright edges towards the light behind it",
+    "jade_ring": "A thick ring of green jade with bright edges towards the light behind it",
     "marble_idol": "A smooth marble bust with folded arms, bright on the right where the sun is behind it",
 }
 """The alternative text of each picture."""
