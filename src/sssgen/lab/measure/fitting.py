@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.ir.contracts import COLOR
+from sssgen.ir.formats import FLOAT32
 from sssgen.ir.types import BY_NAME, components, kind_of
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.problem import Problem
@@ -210,7 +212,8 @@ def free_parameters(chain: Chain, of_scene: set[str], problem: Problem) -> tuple
             continue
         if is_factor(chain, uniform, problem):
             weights = len(default) > 1 and not uniform["color"] and is_sum(chain, uniform, problem)
-            largest = np.inf if uniform["color"] else high if weights else high / default[0]
+            top = COLOR[FLOAT32.name] if uniform["color"] else high
+            largest = top if weights else top / max(default)
             factors.append(Factor(name, len(default), float(largest), default, weights))
             continue
         logarithmic = low > 0.0 and high >= 50.0 * low
