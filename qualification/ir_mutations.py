@@ -141,7 +141,7 @@ def _operators(expr: Binary) -> Iterator[tuple[str, Expr]]:
     if matrices[0] == matrices[1]:
         for table in (_ARITHMETIC, _BITS, _COMPARISONS, _LOGIC):
             for other in table.get(op, ()):
-                if not matrices[0] or other in "+-":
+                if not matrices[0] or (other in "+-" and left.type == right.type):
                     yield f"{op} → {other}", expr._replace(op=other)
     if op in ("-", "/", "%", "<<", ">>", "<", "<=") and left.type == right.type:
         yield f"swapped operands of {op}", expr._replace(left=right, right=left)

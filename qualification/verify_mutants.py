@@ -275,11 +275,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--gl", type=int, default=0, metavar="N", help="also so many changes in the OpenGL driver")
     options = parser.parse_args(arguments)
     files = options.files or sorted(
-        path
-        for folder in FOLDERS
-        for path in folder.iterdir()
-        if path.suffix == ".glsl" and "shadertoy" not in path.name
+        path for folder in FOLDERS for path in folder.glob("*.glsl") if "shadertoy" not in path.name
     )
+    if not files:
+        parser.error("name a FILE: those of tests/transpile are not here")
+    if missing := [str(path) for path in files if not path.is_file()]:
+        parser.error(f"there is no file {missing[0]}")
     random = Random(options.seed)
     total: list[Result] = []
     sample: list[tuple[Original, Result]] = []

@@ -44,6 +44,14 @@ def test_errors_in_the_language(case: str, run: Run, compiler: FakeCompiler) -> 
     check_snapshot(f"cli/language/{case}.txt", ran.err)
 
 
+@pytest.mark.parametrize("text", ["", "// a comment\n", "#ifdef NEVER\nfloat f() { return 1.0; }\n#endif\n"])
+@pytest.mark.parametrize("option", ["--target=wgsl", "--verify", "--as=technique"])
+def test_a_file_with_nothing_is_an_error(text: str, option: str, run: Run, compiler: FakeCompiler) -> None:
+    Path("empty.glsl").write_text(text, encoding="utf-8")
+    status, out, err = run("transpile", "empty.glsl", option)
+    assert (status, out) == (2, "") and "there is nothing to translate in the file" in err and "empty.glsl" in err
+
+
 def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
     Path("bad.glsl").write_bytes(b"float f()\n\xff\xfe")
     Path("zero.glsl").write_bytes(b"float f()\n\x00")

@@ -204,6 +204,17 @@ class TestShaders:
         assert result.interior is not None
         assert result.interior.absorption == pytest.approx((math.log(2.0) / 0.5, 0.0, 0.0))
 
+    def test_a_colour_above_1_that_light_fades_to_is_limited_and_reported(self, tmp_path: Path) -> None:
+        inputs = [
+            value("transmission", "float", "1"), value("thickness", "float", "0.2"),
+            value("attenuation_distance", "float", "0.5"), value("attenuation_color", "color3", "1.4, 0.5, 1"),
+        ]  # fmt: skip
+        (imported,), report = read(tmp_path, shader("".join(inputs), category="gltf_pbr"))
+        assert imported.model.interior is not None
+        assert imported.model.interior.absorption == pytest.approx((0.0, math.log(2.0) / 0.5, 0.0))
+        (row,) = [row for row in report.rows if row.element.endswith("attenuation_color")]
+        assert (row.outcome, row.became) == ("approximated", "limited to 0 to 1: 1, 0.5, 1")
+
     def test_usd_preview_surface(self, tmp_path: Path) -> None:
         inputs = value("diffuseColor", "color3", "0.1, 0.2, 0.3") + value("opacity", "float", "0.25")
         result = model(tmp_path, shader(inputs, category="UsdPreviewSurface"))

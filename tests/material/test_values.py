@@ -8,6 +8,7 @@ import pytest
 
 from sssgen.ir.nodes import NOWHERE, Uniform
 from sssgen.ir.types import BY_NAME, Array
+from sssgen.material import library
 from sssgen.material.values import WrongValue, linear, read_value
 
 
@@ -83,3 +84,11 @@ def test_the_srgb_curve_is_continuous_and_rises() -> None:
     assert values[-1] == pytest.approx(1.0)
     assert min(steps) > 0.0
     assert max(steps) < 2.4e-4
+
+
+def test_a_colour_that_light_fades_to_is_not_above_1() -> None:
+    for name in ("absorption_tint", "gltf_volume"):
+        color = next(one for one in library.load(name).uniforms if one.name == "attenuation_color")
+        assert read_value(color, [0.0, 0.5, 1.0]) == (0.0, 0.5, 1.0)
+        with pytest.raises(WrongValue, match=r"1\.4 is outside the range of 'attenuation_color'"):
+            read_value(color, [1.4, 0.5, 1.0])

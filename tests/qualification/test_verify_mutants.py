@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from qualification.ir_mutations import mutated, mutations
-from qualification.verify_mutants import Original, Result, originals, results
+from qualification.verify_mutants import Original, Result, main, originals, results
 
 SOURCE = """
 int f(int a, float x) {
@@ -66,3 +66,18 @@ def test_inputs_that_see_nothing_find_nothing(original: Original) -> None:
     finally:
         original.rounds, original.expected = seeing, expected
         original.__dict__.pop("limits", None)
+
+
+def test_operators_of_oblong_matrices_keep_their_types(tmp_path: Path) -> None:
+    path = tmp_path / "oblong.glsl"
+    path.write_text("vec2 f(mat3x2 a, mat2x3 b, vec2 v) { return (a * b) * v + (a * b + mat2(1.0)) * v; }\n")
+    (original,) = originals(path, 0)
+    changes = [one.change for one in mutations(original.function)]
+    assert "+ → -" in changes and "* → +" not in changes
+    assert len(list(results(original, 1000, Random(0)))) == len(changes)
+
+
+def test_files_that_are_not_there_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main([str(tmp_path / "none.glsl")])
+    assert "usage:" in (printed := capsys.readouterr().err) and "none.glsl" in printed

@@ -142,6 +142,9 @@ def run(arguments: Namespace) -> int:
             options = arguments.include, macros(arguments.define), arguments.entry
             loaded = load_glsl(path, path.as_posix(), *options)
             module = loaded.module
+            if not any(module):
+                hint = "write functions, structures or constants; those between #if and #endif may need -D NAME"
+                wrong += failure("there is nothing to translate in the file", hint, path.as_posix()).diagnostics
             if arguments.partner is not None:
                 partner = load_glsl(arguments.partner, posix(arguments.partner), *options).module
     except SssgenError as error:

@@ -62,6 +62,14 @@ class Shader:
             self.report_approximation(name, f"the mean of the picture, {_numbers(value)}")
         return mean(value)
 
+    def shares(self, name: str, field: str) -> tuple[float, ...]:
+        """`numbers` from 0 to 1, and a row of the report where the document has others."""
+        given = self.numbers(name, field)
+        limited = tuple(min(max(part, 0.0), 1.0) for part in given)
+        if limited != given:
+            self.report_approximation(name, f"limited to 0 to 1: {_numbers(Constant(limited))}")
+        return limited
+
     def number(self, name: str, field: str) -> float:
         """The first component of `numbers`."""
         return self.numbers(name, field)[0]

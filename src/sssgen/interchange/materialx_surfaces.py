@@ -107,7 +107,7 @@ def _add_interior(shader: Shader, model: SurfaceModel, base: Value) -> SurfaceMo
             return _add_subsurface(shader, model) if scatters else model
         if not scatters or mean(shader.value("transmission_weight", "transmission"))[0] >= 0.5:
             interior = transmission_medium(
-                shader.numbers("transmission_color", "interior"),
+                shader.shares("transmission_color", "interior"),
                 depth,
                 shader.numbers("transmission_scatter", "interior"),
                 shader.number("transmission_scatter_anisotropy", "interior"),
@@ -281,7 +281,7 @@ def gltf_pbr(shader: Shader, name: str) -> SurfaceModel:
         thickness = shader.quantity("thickness", "thickness")
         distance = shader.number("attenuation_distance", "interior")
         if distance > 0.0 and not thickness.is_zero:
-            extinction = extinction_of_color(shader.numbers("attenuation_color", "interior"), distance)
+            extinction = extinction_of_color(shader.shares("attenuation_color", "interior"), distance)
             model = replace(model, interior=medium(extinction, (0.0, 0.0, 0.0)))
         model = replace(model, thickness=thickness, thin_walled=thickness.is_zero)
     shader.report_omissions(_GLTF_LEFT_OUT)
