@@ -70,3 +70,46 @@ def test_a_folder_that_one_may_not_write_to_is_refused_first(tmp_path: Path, mon
     monkeypatch.setattr(file_writer.os, "access", lambda path, mode: False)
     with pytest.raises(SssgenError, match="you may not write to this folder"):
         file_writer.check_folder(str(tmp_path / "new"))
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["emit jade -t wgsl -o out", "render jade", "new mine --copy jade", "pick jade --max-error 1", "check jade"],
+)
+def test_the_name_of_a_preset_is_explained(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(command.split()) == 2
+    error = capsys.readouterr().err
+    assert "'jade' is a preset: `sssgen use jade MESH -o DIR`" in error and "sssgen new my_jade --from jade" in error
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["render ice -o {}/ice.png", "import ice.glb -o {}", "chart inlay_plate -o {}/chart", "use wax body.obj -o {}"],
+)
+def test_a_place_that_cannot_be_written_is_noticed_before_the_work(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").touch()
+    for work in ("run.render.scene_render.render", "interchange.format_readers.read", "presets.used_mesh.used_mesh"):
+        monkeypatch.setattr(f"sssgen.{work}", lambda *_, **__: pytest.fail("it works"))
+    assert main(command.format(tmp_path / "file").split()) == 2
+    assert "this is not a folder" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("materials", "hint"),
+    [
+        ([], "it has none: leave --material out"),
+        ([{"name": "Skin"}, {}], "materials: Skin, or a number from 0"),
+        ([{}], "materials: without names, or a number from 0"),
+        ([{"name": "Eye"}, {"name": "Skin"}], "did you mean 'Skin'?"),
+    ],
+)
+def test_a_material_that_a_file_lacks(
+    materials: list[object], hint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "head.glb"
+    path.write_bytes(glb({"materials": materials}))
+    name = "Skinn" if len(materials) == 2 and materials[1] else "none"
+    assert main(["import", str(path), "--material", name, "-o", str(tmp_path / "out")]) == 2
+    assert f"help: {hint}" in capsys.readouterr().err

@@ -141,6 +141,8 @@ def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
         (["use", "wax", "block.obj", "-t", "metal", "-o", "out"], "sssgen emit NAME.toml -t metal"),
         (["use", "wax", "block.obj", "-t", "gltf", "-o", "out", "--quality", "best"], "leave --quality out"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "big"], "'big' is no size"),
+        (["use", "wax", "block.obj", "-o", "out", "--size", "3.5 cm"], "as --size 35,"),
+        (["use", "wax", "block.obj", "-o", "out", "--size", "0.01"], "choose another --size, in millimetres (20 is"),
         (["use", "wax", "block.obj", "-o", "out", "--material", "Skin"], "leave --material out"),
         (["use", "wax", "block.obj", "-t", "godot", "-o", "out", "--open"], "--open shows pages"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "0"], "cannot be 0 mm large"),
@@ -160,6 +162,42 @@ def test_the_report_as_json(block: str, capsys: pytest.CaptureFixture[str]) -> N
     assert main(["use", "honey", block, "-o", "out", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["ok"] and "out/index.html" in report["files"]
+    assert (report["size_mm"], report["unit_mm"]) == (40.0, 20.0)
+
+
+def test_the_size_that_is_assumed_is_printed(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for option, line in (
+        ([], "size: the longest side is 20 mm, assumed for wax (--size MM, or --size file for metres); a unit"),
+        (["--size", "30"], "size: the longest side is 30 mm; a unit of the mesh is 15 mm"),
+        (["--size", "file"], "size: the longest side is 2000 mm; a unit of the mesh is 1000 mm"),
+    ):
+        assert main(["use", "wax", block, "-o", "out", "--force", *option]) == 0
+        assert line in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "text", "offers_best"),
+    [
+        (["wax"], "Quality: good, the body is drawn", True),
+        (["wax", "--target", "gltf"], "Quality: that of the viewer", False),
+        (["leaf"], "Quality: the same for all", False),
+        (["honey", "--quality", "best"], "Quality: best, the body is drawn", False),
+    ],
+)
+def test_the_readme_says_what_the_quality_is(words: list[str], text: str, offers_best: bool, block: str) -> None:
+    preset, *options = words
+    assert main(["use", preset, block, "-o", "out", *options]) == 0
+    readme = Path("out", "README.md").read_text(encoding="utf-8")
+    assert text in readme and ("the same command with `--quality best`" in readme) == offers_best
+
+
+def test_the_preview_is_offered_with_what_it_needs(
+    block: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for is_there in (True, False):
+        monkeypatch.setattr("sssgen.support.extra_packages.is_installed", lambda extra, has=is_there: has)
+        assert main(["use", "wax", block, "-o", "out"]) == 0
+        assert ("[preview]" in capsys.readouterr().out) != is_there
 
 
 @pytest.mark.parametrize("scale", [1e-5, 1e4])

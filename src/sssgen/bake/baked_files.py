@@ -17,7 +17,7 @@ from sssgen.material import baked
 from sssgen.scene.light_response import SUFFIX, checksum
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_writer import check_folder, check_names, write_files
+from sssgen.support.file_writer import check_file, check_names, write_files
 from sssgen.support.installed_files import is_installed, refusal
 from sssgen.support.paths import posix
 from sssgen.version import VERSION
@@ -148,14 +148,11 @@ def mesh_beside(path: str) -> str:
 
 def _check_place(path: str) -> None:
     """Raises SssgenError if the path, or that of its JSON, is a folder or comes with sssgen, or a parent is a file."""
-    folder, name = os.path.split(path)
-    check_names([name])
+    check_names([os.path.basename(path)])
     if is_installed(path):
         raise refusal(path)
     for file in (path, baked.sidecar(path)):
-        if os.path.isdir(file):
-            raise failure("cannot write the file: a folder has its name", file=posix(file))
-    check_folder(folder)
+        check_file(file)
 
 
 def _write(path: str, data: bytes, facts: Mapping[str, object], beside: Mapping[str, str] | None = None) -> list[str]:

@@ -12,6 +12,7 @@ from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.options import add_output, add_seed, add_workers, check_samples
 from sssgen.cli.output import OK, print_result
 from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.file_writer import check_folder
 from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def run(arguments: Namespace) -> int:
             raise failure(
                 f"two scenes are called '{name}'", "a scene has the name of its file: rename one of the files"
             )
+    check_folder(arguments.output or "")
     announce(scenes, settings)
     record = under(chart.chart_record(scenes, settings), conditions)
     if device is not None:

@@ -8,6 +8,7 @@ from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.options import add_output, nonempty
 from sssgen.cli.output import OK, print_result
+from sssgen.support.file_writer import check_folder
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 
@@ -47,6 +48,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.interchange.thickness_bake import bake_materials
 
     path = arguments.FILE
+    check_folder(arguments.output)
     report = Report(os.path.basename(path))
     with ProgressBar() as bar:
         bar(0, 1, f"reading {report.source}")

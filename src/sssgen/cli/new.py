@@ -9,7 +9,7 @@ from string import Template
 
 from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_result
-from sssgen.material.material_loading import examples
+from sssgen.material.material_loading import examples, preset_hint
 from sssgen.material.model import wrong_name
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
@@ -49,6 +49,8 @@ def run(arguments: Namespace) -> int:
 def _copy(name: str, to: str) -> list[str]:
     """Copies the files of an example into a new folder; the first one is the material."""
     if name not in examples():
+        if hint := preset_hint(name):
+            raise failure(f"unknown example '{name}'", hint)
         raise unknown_name("example", name, examples())
     folder, source = Path(to), Path(examples()[name]).parent
     if folder.exists():

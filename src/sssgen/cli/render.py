@@ -13,6 +13,7 @@ from sssgen.cli.options import add_guards, add_output
 from sssgen.cli.output import CHECK_FAILED, OK, print_result, print_warnings, report_errors
 from sssgen.run.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
+from sssgen.support.file_writer import check_file
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 
@@ -105,6 +106,7 @@ def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] |
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":
         raise failure("a picture is written as .png or .exr", "", output)
+    check_file(output)
     backend = backends.require(name)
     start = perf_counter()
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shlex
 from argparse import ArgumentParser, BooleanOptionalAction, Namespace
 from typing import TYPE_CHECKING
@@ -19,6 +20,10 @@ from sssgen.support.progress import ProgressBar
 if TYPE_CHECKING:
     from sssgen.interchange.mapping_report import Report
     from sssgen.presets.request import Request
+
+
+_UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+"""A unit → its millimetres."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -84,9 +89,14 @@ def run(arguments: Namespace) -> int:
     lines += [
         *_kept_lines(mesh.report),
         *(f"warning: {warning}" for warning in warnings),
+        _size_line(request, arguments.size),
         *_next_lines(request, folder),
     ]
-    report = {"files": [posix(file.path) for file in written], "warnings": warnings, "report": mesh.report.as_json()}
+    report = {
+        "files": [posix(file.path) for file in written],
+        "size_mm": mesh.longest_mm, "unit_mm": mesh.size.unit_mm,
+        "warnings": warnings, "report": mesh.report.as_json(),
+    }  # fmt: skip
     print_result(arguments.json, report, "\n".join(lines))
     if arguments.open:
         _show(folder)
@@ -117,7 +127,9 @@ def _size(text: str | None, usual: float) -> float | None:
     try:
         size = float(text)
     except ValueError:
-        raise failure(f"'{text}' is no size", "--size takes millimetres, or `file`") from None
+        match = re.fullmatch(r"([\d.]+) *(mm|cm|m|in)", text.strip())
+        example = f"--size {float(match[1]) * _UNITS_MM[match[2]]:g}" if match else "--size 35"
+        raise failure(f"'{text}' is no size", f"a number of millimetres, as {example}, or `--size file`") from None
     if not 1e-3 <= size <= 1e6:
         raise failure(f"a body cannot be {size:g} mm large", "--size is from 0.001 to 1000000")
     return size
@@ -149,12 +161,25 @@ def _kept_lines(report: Report) -> list[str]:
     return [line.replace("mapped", "kept", 1) for line in lines]
 
 
+def _size_line(request: Request, given: str | None) -> str:
+    """How large the body is taken to be, and why."""
+    mesh, preset = request.mesh, request.preset
+    longest, unit = f"the longest side is {mesh.longest_mm:.4g} mm", f"a unit of the mesh is {mesh.size.unit_mm:.4g} mm"
+    if given is None:
+        return f"size: {longest}, assumed for {preset.name} (--size MM, or --size file for metres); {unit}"
+    return f"size: {longest}; {unit}"
+
+
 def _next_lines(request: Request, folder: str) -> list[str]:
     """How the project is opened and changed."""
+    from sssgen.support.extra_packages import is_installed
+    from sssgen.support.installation import install_hint
+
     place = shell_word(posix(os.path.join(folder, request.folder)).rstrip("/"))
+    preview = "" if is_installed("preview") else f" (which needs `{install_hint('preview')}`)"
     return [
         f"open it: {request.opened.replace('this folder', shell_word(posix(folder)))}",
-        f"change it: `sssgen preview {place}/scene.toml`; then, in {place}: {request.change}",
+        f"change it: `sssgen preview {place}/scene.toml`{preview}; then, in {place}: {request.change}",
     ]
 
 

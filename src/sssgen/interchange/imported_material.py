@@ -40,7 +40,8 @@ class ImportedMaterial(NamedTuple):
 def check_name(name: str, names: Sequence[str], file: str) -> None:
     """Raises SssgenError where a file has no material with this name or number; '' stands for all."""
     if name and name not in names and name not in map(str, range(len(names))):
-        hint = did_you_mean(name, names) or f"materials: {', '.join(names)[:300]}, or a number from 0"
+        listed = f"materials: {', '.join(filter(None, names))[:300] or 'without names'}, or a number from 0"
+        hint = did_you_mean(name, filter(None, names)) or listed if names else "it has none: leave --material out"
         raise failure(f"the file has no material '{name}'", hint, file)
 
 

@@ -8,8 +8,9 @@ from sssgen.material.material_reader import read_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
-from sssgen.support.paths import place, posix, source_name
+from sssgen.support.paths import PRESETS, place, posix, source_name
 from sssgen.support.text_files import read_text, refuse_folder
+from sssgen.support.toml_source import parse
 
 
 def examples() -> dict[str, str]:
@@ -23,6 +24,16 @@ def is_example(path: str, name: str) -> bool:
     """Whether a file is the example material of that name."""
     example = os.path.join(place("examples"), name, f"{name}.toml")
     return os.path.isfile(example) and os.path.samefile(path, example)
+
+
+def preset_hint(name: str) -> str:
+    """What to do with the name of a preset where a material is asked for; '' for another name."""
+    if name not in parse(read_text(PRESETS, posix(PRESETS)), posix(PRESETS)).data:
+        return ""
+    return (
+        f"'{name}' is a preset: `sssgen use {name} MESH -o DIR` puts it on a mesh, and `sssgen new my_{name} --from "
+        f"{name}` writes its material"
+    )
 
 
 _materials: dict[str, CachedResult] = {}
@@ -43,7 +54,9 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
             names = examples()
             file_hint = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
-            raise failure(f"unknown material '{text}'", file_hint or did_you_mean(text, names) or hint)
+            raise failure(
+                f"unknown material '{text}'", file_hint or preset_hint(text) or did_you_mean(text, names) or hint
+            )
         text = path
     key = f"{os.path.abspath(text)}\0{text}"
     return remember(_materials, key, lambda: parse_material(read_text(text, posix(text)), text))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -13,11 +12,10 @@ from sssgen.scene.measured import media
 from sssgen.scene.measured.media import Medium
 from sssgen.scene.toml_table import Table, number, text, vector
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.paths import posix
+from sssgen.support.paths import PRESETS, posix
 from sssgen.support.text_files import read_text
 from sssgen.support.toml_source import parse
 
-FILE = os.path.join(os.path.dirname(__file__), "presets.toml")
 _COLOR, _LENGTH = (0.0, 1.0), (1e-3, 1e4)
 _KEYS = {
     "title": text(),
@@ -117,7 +115,7 @@ class Preset:
 def presets() -> Mapping[str, Preset]:
     """All presets by name, in the order of their file. Raises SssgenError for a faulty file."""
     measured = media.media()
-    document = parse(read_text(FILE, posix(FILE)), posix(FILE))
+    document = parse(read_text(PRESETS, posix(PRESETS)), posix(PRESETS))
     result = {}
     for name, content in document.data.items():
         table = Table(document, (name,), content, _KEYS)

@@ -145,8 +145,12 @@ def _check_unit(preset: Preset, size: BodySize) -> None:
     medium = preset.interior(size.unit_mm)
     if not preset.scatters or (max(medium.extinction) <= _DENSEST and medium.mean_free_path <= _LONGEST_PATH):
         return
-    hint = "scale the mesh: it is best between 1 and 10 units large"
-    raise failure(f"a unit of the mesh is {size.unit_mm:.3g} mm: the numbers of the material leave their ranges", hint)
+    depth = medium.mean_free_path * size.unit_mm
+    raise failure(
+        f"a unit of the mesh is {size.unit_mm:.3g} mm, and light in {preset.name} is scattered after {depth:.3g} mm: "
+        "the numbers of the material leave their ranges",
+        f"choose another --size, in millimetres ({preset.size_mm:g} is usual), or scale the mesh to 1 to 10 units",
+    )
 
 
 def _behind_boundary(preset: Preset, size: BodySize, stage: MaterialSection) -> MaterialSection:

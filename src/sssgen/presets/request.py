@@ -76,6 +76,21 @@ class Request(NamedTuple):
         return self.keeps_color and not self.baked
 
     @property
+    def quality_text(self) -> str:
+        """The quality, and what it is."""
+        if self.target == "gltf":
+            return "that of the viewer, which draws Khronos' extensions; report.md says what they cannot"
+        if any(self.preset.sheet):
+            return "the same for all: a sheet needs no picture of the body, and no bake"
+        drawn = "good" if self.quality == "best" and not self.baked else self.quality
+        return f"{self.quality}, {QUALITIES[drawn]}"
+
+    @property
+    def can_be_baked(self) -> bool:
+        """Whether another quality has the light inside baked."""
+        return self.preset.scatters and not self.baked and self.target != "gltf"
+
+    @property
     def kept(self) -> SurfaceModel | None:
         """The record of the mesh's own material, whose pictures are kept."""
         part = self.mesh.part
@@ -126,7 +141,7 @@ def shared_values(request: Request) -> dict[str, object]:
 
     texts = {
         "title": preset.title, "name": request.name, "mesh": " ".join(os.path.basename(mesh.path).split()),
-        "target": request.target, "quality": f"{request.quality}, {QUALITIES[request.quality]}",
+        "target": request.target, "quality": request.quality_text,
         "unit_mm": f"{mesh.size.unit_mm:.4g}", "command": request.command, "open": request.opened,
         "change": request.change, "body": MESH, "rest": REST if request.rest else "",
     }  # fmt: skip
@@ -142,7 +157,8 @@ def shared_values(request: Request) -> dict[str, object]:
         "lamp": lamp, "lamp_square": _LAMP_SQUARE, "godot_lamp": 1.0 if any(preset.sheet) else 4.0,
         "playcanvas_lamp": round(1.6 * lamp / (math.pi * _LAMP_SQUARE), 1),
         "room": room, "brightness": BRIGHTNESS, "scene_room": BRIGHTNESS * room,
-        "medium": _medium(request), "baked": request.baked, "response": RESPONSE, "rank": RANK,
+        "medium": _medium(request), "baked": request.baked, "can_be_baked": request.can_be_baked,
+        "response": RESPONSE, "rank": RANK,
     }  # fmt: skip
     return texts | places | light
 

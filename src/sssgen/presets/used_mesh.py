@@ -45,6 +45,11 @@ class UsedMesh(NamedTuple):
         return mesh_file(self.content, self.tangents)
 
     @property
+    def longest_mm(self) -> float:
+        """The longest side of the box in millimetres."""
+        return self.size.unit_mm * max(high - low for low, high in zip(self.low, self.high, strict=True))
+
+    @property
     def radius(self) -> float:
         """Half the diagonal of the box."""
         return 0.5 * float(np.linalg.norm(np.subtract(self.high, self.low)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from sssgen.material.material_loading import examples
+from sssgen.material.material_loading import examples, preset_hint
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_reader import read_scene
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -24,8 +24,8 @@ def load(path: str | os.PathLike[str], draws: bool = True) -> Scene:
         names = examples()
         if text not in names:
             refuse_folder(text, (".toml",), "scene.toml")
-            hint = did_you_mean(text, names) or f"give a path that ends in .toml, or one of: {', '.join(names)}"
-            raise failure(f"unknown scene '{text}'", hint)
+            hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
+            raise failure(f"unknown scene '{text}'", preset_hint(text) or did_you_mean(text, names) or hint)
         path = os.path.join(os.path.dirname(names[text]), "scene.toml")
     return parse_scene(read_text(os.fspath(path), posix(path)), path, draws)
 

@@ -8,7 +8,7 @@ import os
 from typing import Any
 
 from sssgen.material.library import OF_SHELLS
-from sssgen.material.material_loading import examples, is_example, load_material
+from sssgen.material.material_loading import examples, is_example, load_material, preset_hint
 from sssgen.material.requirements import baked_functions
 from sssgen.material.roles import SECTIONS
 from sssgen.material.shell_stages import choices
@@ -136,7 +136,7 @@ class _Reader:
         if name not in examples():
             file_hint = f"did you mean '{name}.toml'?" if beside else ""
             hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
-            top.error("material", f"unknown material '{name}'", file_hint or hint)
+            top.error("material", f"unknown material '{name}'", file_hint or preset_hint(name) or hint)
         return beside or name
 
     def bodies(self, top: Table) -> tuple[str, ...]:

@@ -30,6 +30,11 @@ def installed_version(package: str) -> str:
         return ""
 
 
+def is_installed(extra: str) -> bool:
+    """Whether all packages of an extra are in this environment."""
+    return all(installed_version(package) for package in packages().get(extra, ()))
+
+
 def _declared_requirements() -> dict[str, list[str]]:
     """The requirements of this checkout or, where it is none, of the installed distribution."""
     top, checkout = source()

@@ -78,6 +78,13 @@ def check_folder(folder: str) -> None:
         )
 
 
+def check_file(path: str) -> None:
+    """Raises SssgenError if a file cannot be written: a folder has its name, or as `check_folder`."""
+    if os.path.isdir(path):
+        raise failure("cannot write the file: a folder has its name", file=posix(path))
+    check_folder(os.path.dirname(path))
+
+
 def write_files(
     folder: str | os.PathLike[str], files: Mapping[str, str | bytes], installed: bool = False
 ) -> list[Written]:

@@ -18,6 +18,8 @@ PACKAGE = os.path.dirname(os.path.dirname(__file__))
 
 TECHNIQUES = os.path.join(PACKAGE, "techniques")
 """The folder of the technique library."""
+PRESETS = os.path.join(PACKAGE, "presets", "presets.toml")
+"""The table of the ready materials."""
 
 _LIBRARIES = tuple(os.path.realpath(folder) + os.sep for folder in (TECHNIQUES, PACKAGE))
 """Their real paths; a file's name is relative to them."""

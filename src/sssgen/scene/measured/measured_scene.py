@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.material.material_loading import preset_hint
 from sssgen.material.medium_look import COLOR, DEPTH
 from sssgen.material.scatter_color import albedo_of_color
 from sssgen.scene.body_identity import contents
@@ -121,8 +122,7 @@ def load(name: str) -> MeasuredScene:
             if name in drawn_scenes():
                 message = f"the scene '{name}' is for pictures: it describes no medium, so there is nothing to measure"
                 raise failure(message, listed)
-            hint = did_you_mean(name, scenes) or listed
-            raise failure(f"unknown scene '{name}'", hint)
+            raise failure(f"unknown scene '{name}'", preset_hint(name) or did_you_mean(name, scenes) or listed)
         name = scenes[name]
     return of_scene(load_scene(name, draws=False), name)
 
