@@ -91,7 +91,14 @@ def test_a_boundary_lets_the_room_in_but_for_its_own_reflection() -> None:
         "interior_octaves_refracted", d=100.0, N=NORMAL, V=view, extinction=np.full(3, 2.0),
         scattering_albedo=np.ones(3), ior=1.5, irradiance=np.ones(3), irradiance_behind=np.ones(3),
     )  # fmt: skip
-    close(bright, through(w=inside, V=view, N=NORMAL, ior=1.5) * np.ones(3), rtol=1e-6)
+    share = through(V=view, N=NORMAL, ior=1.5)
+    close(bright, share * np.ones(3), rtol=1e-6)
+    # Fresnel's equations; at the silhouette as at a cosine of 0.15
+    across = (0.8 - 1.5 * inside[2]) / (0.8 + 1.5 * inside[2])
+    along = (1.5 * 0.8 - inside[2]) / (1.5 * 0.8 + inside[2])
+    close(share, 1.0 - 0.5 * (across**2 + along**2), rtol=1e-6)
+    grazing = np.array([np.sqrt(1.0 - 0.15**2), 0.0, 0.15])
+    close(through(V=np.array([1.0, 0.0, 0.0]), N=NORMAL, ior=1.5), through(V=grazing, N=NORMAL, ior=1.5), rtol=1e-9)
 
 
 def test_absorption_and_order_of_the_sides() -> None:
