@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.mesh_suitability import MeshNeeds, mesh_warnings
+from sssgen.scene.mesh_suitability import MeshNeeds, mesh_warnings, size_warnings
 
 pytest.importorskip("igl")
 INSIDE = MeshNeeds(inside=True)
@@ -91,3 +91,9 @@ def test_textures_need_coordinates(tmp_path: Path) -> None:
 def test_a_body_of_few_mean_free_paths(tmp_path: Path) -> None:
     (warning,) = mesh_warnings(mesh(tmp_path / "box.obj", 1.0), INSIDE._replace(paths=0.4))
     assert "0.4 mean free paths thick" in warning and "leaf or paper" in warning
+
+
+def test_a_body_of_many_mean_free_paths_looks_opaque() -> None:
+    assert size_warnings(57.7) == []
+    (warning,) = size_warnings(1.2e3)
+    assert "1.2e+03 mean free paths thick" in warning and "--size" in warning

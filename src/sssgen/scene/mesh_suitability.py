@@ -26,6 +26,8 @@ _SHEETS = "choose the quality fast, or the preset leaf or paper"
 """What to do with a mesh that is no body."""
 FEW_PATHS = 1.0
 """The mean chord in mean free paths below which light passes a body almost without scattering."""
+MANY_PATHS = 300.0
+"""The same above which a body looks opaque; presets have 4 to 58 in the sizes that they assume."""
 MOST_SHELLS = 64
 """The number of shells, the largest, that are searched for others inside them."""
 
@@ -126,6 +128,11 @@ def _inside_others(places: Array, shells: list[npt.NDArray[np.int64]]) -> npt.ND
 
 def size_warnings(paths: float) -> list[str]:
     """The warnings for a body whose mean chord is so many mean free paths."""
+    if paths > MANY_PATHS:
+        return [
+            f"the body is {paths:.3g} mean free paths thick: almost no light comes through, and it looks as if it were "
+            "opaque; make it smaller (--size)"
+        ]
     if paths >= FEW_PATHS:
         return []
     return [
