@@ -98,7 +98,7 @@ def test_the_advice_of_the_page_works(capsys: pytest.CaptureFixture[str]) -> Non
     assert "in jade_ring/jade_ring.toml" in save("jade_ring/scene.toml", surfaceRoughness=[0.7])
     assert main(["new", "jade_ring", "--copy", "jade_ring"]) == 2
     assert "the folder already exists" in capsys.readouterr().err
-    assert main(["new", "x", "--copy", "jade"]) == 2
+    assert main(["new", "x", "--copy", "jade_rin"]) == 2
     assert "did you mean 'jade_ring'?" in capsys.readouterr().err
 
 
