@@ -81,10 +81,10 @@ def run(arguments: Namespace) -> int:
         mesh = used_mesh(arguments.MESH, size, arguments.material)
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
+        warnings = _warnings(request)
         written = write_files(folder, project_files(request, folder, arguments.force, bar))
     if mesh.part is not None:
         report_kept(mesh.part, request.shows_color, mesh.report)
-    warnings = _warnings(request)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
     lines += [
         *_kept_lines(mesh.report),
