@@ -113,3 +113,20 @@ def test_a_material_that_a_file_lacks(
     name = "Skinn" if len(materials) == 2 and materials[1] else "none"
     assert main(["import", str(path), "--material", name, "-o", str(tmp_path / "out")]) == 2
     assert f"help: {hint}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["render {}", "emit {} -t wgsl -o out", "preview {}", "pick {} --max-error 1"])
+@pytest.mark.parametrize(
+    ("name", "message", "hint"),
+    [
+        ("my cow.obj", "this is a mesh, and not a TOML file", 'sssgen use wax "my cow.obj" -o DIR'),
+        ("paint.png", "this is a picture, and not a TOML file", "name a material or a scene"),
+    ],
+)
+def test_a_mesh_or_a_picture_is_no_material_and_no_scene(
+    command: str, name: str, message: str, hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path(name).write_bytes(b"v 0 0 0\n")
+    assert main([name if word == "{}" else word for word in command.split()]) == 2
+    error = capsys.readouterr().err
+    assert error.count("error:") == 1 and message in error and hint in error

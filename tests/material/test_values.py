@@ -86,6 +86,14 @@ def test_the_srgb_curve_is_continuous_and_rises() -> None:
     assert max(steps) < 2.4e-4
 
 
+def test_a_colour_of_bytes_is_an_error() -> None:
+    tint = next(one for one in library.load("base_color").uniforms if one.name == "tint")
+    with pytest.raises(WrongValue, match="255 is no opacity of 'tint'") as wrong:
+        read_value(tint, [200, 180, 150, 255])
+    assert "#rrggbbaa" in wrong.value.hint
+    assert read_value(tint, [2.0, 1.0, 0.5, 1.0]) == (2.0, 1.0, 0.5, 1.0)
+
+
 def test_a_colour_that_light_fades_to_is_not_above_1() -> None:
     for name in ("absorption_tint", "gltf_volume"):
         color = next(one for one in library.load(name).uniforms if one.name == "attenuation_color")

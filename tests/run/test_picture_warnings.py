@@ -10,7 +10,7 @@ import pytest
 
 from sssgen.material.baked import BakeFile
 from sssgen.run.render.baked_body import check_body
-from sssgen.run.render.picture_warnings import darkness_warnings, warnings_of
+from sssgen.run.render.picture_warnings import exposure_warnings, warnings_of
 from sssgen.scene import scene_loading
 from sssgen.scene.body_identity import measures
 from sssgen.scene.geometry import Ball, Mesh
@@ -51,7 +51,7 @@ def scene(tmp_path: Path) -> Callable[[str], Scene]:
 
 def messages(scene: Scene, hit: bool = True, front: bool = True) -> list[tuple[str, int]]:
     shape = (2, 2)
-    found = warnings_of(scene, {"passes": []}, np.full(shape, hit), np.full(shape, front))  # type: ignore[arg-type,typeddict-item]
+    found = warnings_of(scene, np.full(shape, hit), np.full(shape, front))
     return [(warning.message, warning.span.line) for warning in found]
 
 
@@ -76,12 +76,20 @@ def test_a_camera_in_a_mesh(scene: Callable[[str], Scene]) -> None:
 
 def test_a_black_picture(scene: Callable[[str], Scene]) -> None:
     black, shown = np.zeros((2, 2, 3)), np.array([[True, False], [False, False]])
-    (warning,) = darkness_warnings(scene(SCENE), black, shown)
+    (warning,) = exposure_warnings(scene(SCENE), black, shown)
     assert "no light reaches what the camera sees" in warning.message and warning.span.line == 7
-    (warning,) = darkness_warnings(scene(SCENE[: SCENE.index("[[light]]")]), black, shown)
+    (warning,) = exposure_warnings(scene(SCENE[: SCENE.index("[[light]]")]), black, shown)
     assert warning.message == "the picture is black: the scene has no light"
-    assert darkness_warnings(scene(SCENE), black, ~shown & False) == []
-    assert darkness_warnings(scene(SCENE), black + 0.1, shown) == []
+    assert exposure_warnings(scene(SCENE), black, np.zeros((2, 2), bool)) == []
+    assert exposure_warnings(scene(SCENE), black + 0.1, shown) == []
+
+
+def test_a_white_picture(scene: Callable[[str], Scene]) -> None:
+    color, shown = np.full((2, 20, 3), 3.0), np.ones((2, 20), bool)
+    (warning,) = exposure_warnings(scene(SCENE), color, shown)
+    assert warning.message.startswith("the picture is white: it is overexposed")
+    color[:, :2, 2] = 0.9
+    assert exposure_warnings(scene(SCENE), color, shown) == []
 
 
 def test_a_black_light(scene: Callable[[str], Scene]) -> None:

@@ -384,4 +384,4 @@ def test_an_open_mesh_under_a_pass_gets_a_warning(tmp_path: Path, capsys: pytest
         (tmp_path / "box.obj").write_text(text)
         picture = str(tmp_path / "picture.png")
         assert main(["render", str(tmp_path / "scene.toml"), "-o", picture, "--backend", "numpy"]) == 0
-        assert ("the mesh has a hole" in capsys.readouterr().err) == warns
+        assert ("the mesh has holes" in capsys.readouterr().err) == warns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import compile
 from sssgen.run.evaluate.input_files import texture
 from sssgen.run.render.bake_warnings import bake_warnings
+from sssgen.run.render.mesh_needs import mesh_diagnostics
 from sssgen.run.render.texture_warnings import texture_warnings
 from sssgen.scene.pictures.images import write_png
 from sssgen.scene.scene_loading import load
@@ -111,3 +113,17 @@ def test_grey_pictures_have_three_equal_channels(srgb: bool, folder: Path) -> No
     clear = texture("clear.png", srgb=srgb).levels[0]
     assert clear.shape == (4, 4, 4) and (clear[..., 0] == clear[..., 2]).all()
     assert clear[..., 3] == pytest.approx(0.25, abs=0.01)
+
+
+def test_a_mesh_without_coordinates_whose_material_reads_a_picture(folder: Path) -> None:
+    mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+    scene = SCENE.replace('kind = "ball"\nradius = 1.0', 'kind = "mesh"\nfile = "body.obj"')
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
+    warned()
+    with_coordinates = mesh + "vt 0 0\n" + re.sub("([1-4])", r"\1/1", faces)
+    for text, count in ((mesh + faces, 1), (with_coordinates, 0)):
+        (folder / "body.obj").write_text(text, encoding="utf-8")
+        found = mesh_diagnostics(load("scene.toml"), load_material("painted.toml"))
+        assert len(found) == count and all("no texture coordinates" in one.message for one in found)
+        assert all(one.span.file.endswith("body.obj") for one in found)

@@ -70,7 +70,7 @@ class Container:
         path = os.path.join(self.folder, name)
         top = os.path.realpath(self.top)
         if os.path.commonpath([top, os.path.realpath(path)]) != top:
-            hint = "name a folder that has all files of the material with --root"
+            hint = "copy it to that folder; or name a folder that has all files with --root, which sssgen import takes"
             raise place.fault(f"'{name[:80]}' leaves the folder of the file", hint)
         return path
 

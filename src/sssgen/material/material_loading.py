@@ -9,7 +9,7 @@ from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import PRESETS, place, posix, source_name
-from sssgen.support.text_files import read_text, refuse_folder
+from sssgen.support.text_files import read_text, refuse_folder, refuse_other_kinds
 from sssgen.support.toml_source import parse
 
 
@@ -58,6 +58,7 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
                 f"unknown material '{text}'", file_hint or preset_hint(text) or did_you_mean(text, names) or hint
             )
         text = path
+    refuse_other_kinds(text)
     key = f"{os.path.abspath(text)}\0{text}"
     return remember(_materials, key, lambda: parse_material(read_text(text, posix(text)), text))
 

@@ -42,7 +42,11 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
         count = f"{len(flat)} value{'' if len(flat) == 1 else 's'}"
         raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this has {count}")
     nested = any(isinstance(element, list) for element in raw) if isinstance(raw, list) else False
-    return tuple(_number(uniform, element, None if nested else index) for index, element in enumerate(flat))
+    values = tuple(_number(uniform, element, None if nested else index) for index, element in enumerate(flat))
+    if is_colour(uniform) and len(values) == 4 and not 0.0 <= values[3] <= 1.0:
+        hint = 'a colour goes from 0 to 1; for bytes write "#rrggbbaa"'
+        raise WrongValue(f"{values[3]:g} is no opacity of '{uniform.name}'", hint, None if nested else 3)
+    return values
 
 
 def read_texture(uniform: Uniform, raw: object) -> str:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-
-from sssgen.ir.types import Sampler
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import read_uniforms, requirements
 from sssgen.preview.bodies import body_key, body_size
+from sssgen.run.render.mesh_needs import mesh_needs
 from sssgen.scene.geometry import Mesh
-from sssgen.scene.mesh_suitability import MeshNeeds, mesh_warnings, size_warnings
+from sssgen.scene.mesh_suitability import mesh_warnings, size_warnings
 from sssgen.scene.scene import Scene
 from sssgen.support.file_memo import CachedResult, remember
 
-_INSIDE = {"depth-map", "depth-layers", "back-faces", "eye-layers", "inner-light"}
-"""The requirements of materials that follow light through the body."""
 _PATH = "mean_free_path"
 _warnings: dict[str, CachedResult] = {}
 _MOST = 6
@@ -25,21 +21,12 @@ def mesh_notes(scene: Scene, material: Material) -> list[str]:
     mesh = scene.geometry
     if not isinstance(mesh, Mesh):
         return []
-    required = set(requirements(material.stages))
-    needs = MeshNeeds(bool(required & _INSIDE), tuple(_readers(material, scene.textures)))
+    needs = mesh_needs(scene, material)
     own = remember(_warnings, f"{body_key(mesh)} {needs}", lambda: mesh_warnings(mesh, needs), _MOST)
     path = _mean_free_path(scene, material)
-    if path is None or not needs.inside or "inner-light" in required:
+    if path is None or not needs.inside or "inner-light" in requirements(material.stages):
         return own
     return [*own, *size_warnings(body_size(mesh, 1.0).mean_chord / path)]
-
-
-def _readers(material: Material, textures: Collection[str]) -> Iterator[str]:
-    """The techniques that read a texture by the mesh's coordinates, of those that a file names."""
-    for use in material.stages:
-        names = {uniform.name for uniform in read_uniforms(use) if isinstance(uniform.type, Sampler)}
-        if names & {*use.textures, *textures} and any(param.name == "uv" for param in use.technique.function.params):
-            yield use.technique.name
 
 
 def _mean_free_path(scene: Scene, material: Material) -> float | None:

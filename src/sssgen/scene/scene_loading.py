@@ -10,7 +10,7 @@ from sssgen.scene.scene import Scene
 from sssgen.scene.scene_reader import read_scene
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
-from sssgen.support.text_files import read_text, refuse_folder
+from sssgen.support.text_files import read_text, refuse_folder, refuse_other_kinds
 from sssgen.support.toml_source import parse
 
 
@@ -27,6 +27,7 @@ def load(path: str | os.PathLike[str], draws: bool = True) -> Scene:
             hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
             raise failure(f"unknown scene '{text}'", preset_hint(text) or did_you_mean(text, names) or hint)
         path = os.path.join(os.path.dirname(names[text]), "scene.toml")
+    refuse_other_kinds(path)
     return parse_scene(read_text(os.fspath(path), posix(path)), path, draws)
 
 

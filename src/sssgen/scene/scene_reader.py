@@ -133,7 +133,7 @@ class _Reader:
         if name.endswith(".toml"):
             return self.file(("material",), name)
         beside = material_beside(name, self.folder)
-        if name not in examples():
+        if name not in examples() and isinstance(top.content["material"], str):
             file_hint = f"did you mean '{name}.toml'?" if beside else ""
             hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
             top.error("material", f"unknown material '{name}'", file_hint or preset_hint(name) or hint)

@@ -10,13 +10,15 @@ from sssgen.ir.spans import Span
 from sssgen.support import unsaved
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import note
-from sssgen.support.paths import posix, stem
+from sssgen.support.paths import posix, shell_word, stem
 
 MAX_BYTES = 4 << 20
 """The largest text file that is read. Shader libraries of thousands of functions stay below 1 MB."""
 
 TEXTS = (".toml", ".sss", ".glsl")
 """The suffixes of the texts that most commands read."""
+_MESHES = (".obj", ".ply", ".stl", ".glb", ".gltf", ".fbx", ".blend", ".usd", ".usdz", ".dae")
+_PICTURES = (".png", ".jpg", ".jpeg", ".exr", ".hdr", ".npy", ".tif", ".tiff", ".webp", ".dds", ".ktx2")
 
 
 def read_text(path: str | os.PathLike[str], shown: str, otherwise: str = "") -> str:
@@ -83,6 +85,16 @@ def refuse_special(path: str | os.PathLike[str], shown: str) -> None:
     mode = os.stat(path).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise failure("this is not a file", "write its content into a file first", shown)
+
+
+def refuse_other_kinds(path: str | os.PathLike[str]) -> None:
+    """Raises SssgenError for a file where TOML is wanted, whose name says that it is a mesh or a picture."""
+    shown, suffix = posix(path), os.path.splitext(os.fspath(path))[1].lower()
+    if suffix in _MESHES:
+        hint = f"put a ready material on it: sssgen use wax {shell_word(shown)} -o DIR"
+        raise failure("this is a mesh, and not a TOML file", hint, shown)
+    if suffix in _PICTURES:
+        raise failure("this is a picture, and not a TOML file", "name a material or a scene that uses it", shown)
 
 
 def refuse_folder(path: str | os.PathLike[str], suffixes: Sequence[str] = TEXTS, usual: str = "") -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from sssgen.ir.spans import Span
@@ -12,13 +10,14 @@ from sssgen.scene.geometry import Geometry, Mesh
 from sssgen.scene.geometry_mesh import is_closed
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import Diagnostic, Reporter
-from sssgen.targets.reflection_record import Reflection
 
 BLACK = 1e-3
 """The linear value up to which a sample is black: it is shown as 0 to 3 of 255."""
+WHITE, MOST = 0.99, 0.95
+"""The linear value from which a sample is white, and the share of such samples that makes a picture white."""
 
 
-def warnings_of(scene: Scene, reflection: Reflection, hit: Array, front: Array) -> list[Diagnostic]:
+def warnings_of(scene: Scene, hit: Array, front: Array) -> list[Diagnostic]:
     """The warnings about a picture. `hit` is whether a sample shows the surface, `front` whether from outside."""
     reporter = Reporter(scene.document.reporter.file, "\n".join(scene.document.reporter.lines))
     if scene.geometry is not None:
@@ -32,14 +31,21 @@ def warnings_of(scene: Scene, reflection: Reflection, hit: Array, front: Array) 
         if not any(light.color):
             place = scene.document.place("light", number, "color").value
             reporter.warn(place, "this light is black", "give it a colour, or remove it")
-    return [*reporter.warnings, *_open_mesh(scene.geometry, reflection)]
+    return reporter.warnings
 
 
-def darkness_warnings(scene: Scene, color: Array, shown: Array) -> list[Diagnostic]:
-    """The warning about a picture with black bodies. `color` (h, w, 3) is linear, `shown` (h, w) where they are."""
-    if not shown.any() or color[shown].max() > BLACK:
+def exposure_warnings(scene: Scene, color: Array, shown: Array) -> list[Diagnostic]:
+    """The warning about a picture with black or white bodies. `color` (h, w, 3) is linear and as it is shown, `shown`
+    (h, w) where they are."""
+    if not shown.any():
         return []
     reporter = scene.document.reporter
+    if (color[shown].min(axis=1) >= WHITE).mean() > MOST:
+        message = "the picture is white: it is overexposed, or its colours are above 1"
+        hint = "lower `exposure` of the scene, the light, or the colours of the material: 1 is white"
+        return [Diagnostic("warning", message, Span(reporter.file, 0, 0, 0, 0), hint)]
+    if color[shown].max() > BLACK:
+        return []
     if not scene.lights and not any(scene.ambient) and "environment" not in scene.measured:
         message, hint = "the picture is black: the scene has no light", "add [[light]], or [environment]"
         return [Diagnostic("warning", message, Span(reporter.file, 0, 0, 0, 0), hint)]
@@ -59,13 +65,3 @@ def _is_seen_from_inside(scene: Scene, geometry: Geometry, hit: Array, front: Ar
 def _camera_key(scene: Scene, key: str) -> Span:
     """Where a key of the camera is, or else the camera, or the file."""
     return scene.document.place("camera", key).value
-
-
-def _open_mesh(mesh: Geometry | None, reflection: Reflection) -> Iterator[Diagnostic]:
-    """A warning about an open mesh under passes that look for the end of the body."""
-    passes = [drawn["name"] for drawn in reflection["passes"] if drawn["of"] == "body"]
-    if passes and isinstance(mesh, Mesh) and not is_closed(mesh):
-        fault = "the mesh has a hole, or triangles with different orientations"
-        message = f"{fault}, and {passes[0]} looks for its other side"
-        hint = "the light inside is wrong there: close it, and make all triangles counter-clockwise seen from outside"
-        yield Diagnostic("warning", message, Span(mesh.path, 0, 0, 0, 0), hint)

@@ -26,8 +26,9 @@ from sssgen.run.render import pixel_mesh
 from sssgen.run.render.bake_warnings import bake_warnings
 from sssgen.run.render.environment_maps import reflection_map
 from sssgen.run.render.eye_pictures import with_eye_pictures
+from sssgen.run.render.mesh_needs import mesh_diagnostics
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
-from sssgen.run.render.picture_warnings import darkness_warnings, warnings_of
+from sssgen.run.render.picture_warnings import exposure_warnings, warnings_of
 from sssgen.run.render.scene_values import environment_of, shell_of
 from sssgen.run.render.screen_window import Window, whole_window, window_of
 from sssgen.run.render.several_bodies import Body, Canvas, in_order
@@ -115,14 +116,15 @@ def render(
         samples, hit, front = _surface(scene, compiled, shell, backend, (width, height), progress)
     color, cover = _checked(reflection, samples, hit)
     warnings = _warnings(scene, material, reflection, hit, front)
-    warnings += darkness_warnings(scene, color * cover[..., None], hit)
+    warnings += exposure_warnings(scene, scene.exposure * color * cover[..., None], hit)
     return _develop(scene, color, cover)._replace(warnings=warnings)
 
 
 def _warnings(scene: Scene, material: Material, reflection: Reflection, hit: Array, front: Array) -> list[Diagnostic]:
     """What is doubtful of the picture of a body."""
     return [
-        *warnings_of(scene, reflection, hit, front),
+        *warnings_of(scene, hit, front),
+        *mesh_diagnostics(scene, material),
         *texture_warnings(scene, material, reflection),
         *bake_warnings(scene, material, reflection),
     ]
@@ -202,8 +204,8 @@ def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progre
         canvas.draw(body, window, color, cover, mesh.distance)
         noted = _warnings(body.scene, body.material, body.compiled.reflection, mesh.hit, mesh.front)
         warnings += [warning for warning in noted if warning not in warnings]  # those of lights are of all bodies
-    warnings += darkness_warnings(scene, canvas.color, canvas.covered)
     linear = canvas.tone_mapped(scene.shell) * scene.exposure
+    warnings += exposure_warnings(scene, linear, canvas.covered)
     return RenderedPicture(
         _average(_without_border(linear), scene.samples)[::-1],
         _average(_without_border(canvas.covered[..., None].astype(float)), scene.samples)[::-1, :, 0],

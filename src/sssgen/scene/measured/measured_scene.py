@@ -31,7 +31,7 @@ from sssgen.scene.toml_table import Table
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import stem
-from sssgen.support.text_files import refuse_folder
+from sssgen.support.text_files import refuse_folder, refuse_other_kinds
 from sssgen.support.value_bytes import encode
 
 SIDE = 64
@@ -118,6 +118,7 @@ def load(name: str) -> MeasuredScene:
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in scenes:
             refuse_folder(name, (".toml",), "scene.toml")
+            refuse_other_kinds(name)
             listed = f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
             if name in drawn_scenes():
                 message = f"the scene '{name}' is for pictures: it describes no medium, so there is nothing to measure"
