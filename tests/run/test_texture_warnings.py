@@ -119,8 +119,8 @@ def test_a_mesh_without_coordinates_whose_material_reads_a_picture(folder: Path)
     mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
     faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
     scene = SCENE.replace('kind = "ball"\nradius = 1.0', 'kind = "mesh"\nfile = "body.obj"')
-    (folder / "scene.toml").write_text(scene, encoding="utf-8")
     warned()
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
     with_coordinates = mesh + "vt 0 0\n" + re.sub("([1-4])", r"\1/1", faces)
     for text, count in ((mesh + faces, 1), (with_coordinates, 0)):
         (folder / "body.obj").write_text(text, encoding="utf-8")
