@@ -397,6 +397,18 @@ def test_an_inverted_mesh_is_the_same_body(folder: Path, capsys: pytest.CaptureF
     assert (Path("turned.npy").read_bytes()) == Path("right.npy").read_bytes()
 
 
+def test_parts_inside_each_other_have_no_light_inside(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outer, inner = meshes.box((1.0, 0.6, 0.4)), meshes.box((0.5, 0.3, 0.2))
+    faces = np.concatenate([outer.faces, inner.faces + len(outer.vertices)])
+    write(Path("both.ply"), outer._replace(vertices=np.r_[outer.vertices, inner.vertices], faces=faces, uv=None))
+    assert main(["bake", "fluence", "both.ply", "-o", "out.npy", "--medium", "marble", "--unit-mm", "2", *FEW]) == 2
+    error = capsys.readouterr().err
+    assert "20% of the surface is inside another part of the mesh" in error and "--> both.ply" in error
+    cavity = np.concatenate([outer.faces, inner.faces[:, ::-1] + len(outer.vertices)])
+    write(Path("both.ply"), outer._replace(vertices=np.r_[outer.vertices, inner.vertices], faces=cavity, uv=None))
+    bake("fluence", "both.ply", "-o", "out.npy", "--medium", "marble", "--unit-mm", "2", *FEW)
+
+
 def test_a_volume_for_another_light(stone: Path, folder: Path) -> None:
     scene = folder / "scene.toml"
     scene.write_text(SCENE.replace("[0.4, 0.8, 0.1]", "[0.0, 1.0, 0.0]"), encoding="utf-8")

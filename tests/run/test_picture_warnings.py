@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sssgen.material.baked import BakeFile
-from sssgen.run.render.baked_body import check_body
+from sssgen.run.render.baked_body import check_body, check_lights
 from sssgen.run.render.picture_warnings import exposure_warnings, warnings_of
 from sssgen.scene import scene_loading
 from sssgen.scene.body_identity import measures
@@ -122,3 +122,13 @@ def test_a_thickness_map_of_another_mesh_is_refused(tmp_path: Path) -> None:
     check_body(sidecar("thickness", 5), Ball(), "t.png")
     with pytest.raises(SssgenError, match=r"'t\.png' is baked for a mesh of 5 triangles; body\.obj has 4"):
         check_body(sidecar("thickness", 5), mesh, "t.png")
+
+
+@pytest.mark.parametrize("kind", ["thickness", "transmittance", "depth"])
+def test_lengths_towards_another_light_are_refused(kind: str, scene: Callable[[str], Scene]) -> None:
+    lights = scene(SCENE).lights
+    check_lights(BakeFile(kind, "", {}, {}, {"light": {"direction": [0.0, 1.0, 0.0]}}), Ball(), lights, "t.png")
+    check_lights(BakeFile(kind, "", {}, {}, {"light": None}), Ball(), lights, "t.png")
+    other = BakeFile(kind, "", {}, {}, {"light": {"direction": [1.0, 0.0, 0.0]}})
+    with pytest.raises(SssgenError, match=r"'t\.png' is baked for a light from \(1, 0, 0\)"):
+        check_lights(other, Ball(), lights, "t.png")

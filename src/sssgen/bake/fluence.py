@@ -29,6 +29,7 @@ from sssgen.scene.measured import measured_scene, media
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium
 from sssgen.scene.mesh_files import SUFFIXES
+from sssgen.scene.mesh_suitability import overlap
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import refuse_folder
@@ -42,6 +43,8 @@ MOST_OPAQUE = 10.0
 LEAST_SCATTERING = 0.05
 """The scattering along the longest side, in mean free paths, below which a bake is refused: nearly no path scatters, so
 that the noise of the few that do is larger than the light."""
+MOST_OVERLAP = 0.01
+"""The share of a mesh's surface inside other parts of it above which a bake is refused."""
 BYTES = 3 * 6 * 8
 """Bytes of memory for each voxel and direction: three channels, of the field and of its factors."""
 
@@ -132,6 +135,11 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
     grid = grid_in_box(scene, settings.voxels)
     if isinstance(scene.geometry, Mesh):
         geometry_mesh.mesh_of(scene.geometry)  # refuses an open mesh before the work
+        if (share := overlap(scene.geometry)) > MOST_OVERLAP:
+            raise failure(
+                f"{share:.0%} of the surface is inside another part of the mesh: light inside needs one surface",
+                "make one surface of the parts, or delete the inner ones", posix(scene.geometry.path),
+            )  # fmt: skip
     depth = max(scene.medium.extinction) * _voxel(scene, grid)
     if depth > MOST_OPAQUE:
         raise failure(

@@ -28,6 +28,8 @@ FEW_PATHS = 1.0
 """The mean chord in mean free paths below which light passes a body almost without scattering."""
 MANY_PATHS = 300.0
 """The same above which a body looks opaque; presets have 4 to 58 in the sizes that they assume."""
+BELOW = 1e-4
+"""How deep below the surface a point is inside, relative to the mesh's longest side."""
 MOST_SHELLS = 64
 """The number of shells, the largest, that are searched for others inside them."""
 
@@ -124,6 +126,16 @@ def _inside_others(places: Array, shells: list[npt.NDArray[np.int64]]) -> npt.ND
             solid = MeshDistance(places[used], renamed.reshape(shell.shape))
             inside[near] |= solid.winding_number(points[near]) > INSIDE
     return inside
+
+
+def overlap(mesh: Mesh) -> float:
+    """The share of the surface that is inside another part of the mesh; the inner wall of a cavity is not."""
+    triangles, side = mesh.triangles, -1.0 if mesh.inside_out else 1.0
+    corners = triangles.places[triangles.corners]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    below = side * BELOW * float(np.ptp(triangles.places, axis=0).max())
+    windings = mesh.solid.winding_number(corners.mean(axis=1) - below * triangles.flat)
+    return float(areas[windings > 1.0 + INSIDE].sum() / areas.sum())
 
 
 def size_warnings(paths: float) -> list[str]:

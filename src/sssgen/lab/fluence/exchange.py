@@ -18,6 +18,7 @@ import numpy.typing as npt
 from sssgen.lab.fluence.photons import MOST_WALLS, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection
 from sssgen.lab.reference.dielectric import Dielectric
+from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
 Array = npt.NDArray[np.float64]
@@ -40,7 +41,10 @@ class Scattered(NamedTuple):
 def scattered(
     rays: Tracer, projection: Projection, medium: Medium, unscattered: Array, flights: int, seed: int
 ) -> Scattered:
-    """The scattered light of the `unscattered` (directions, counting voxels), for `flights` from each point."""
+    """The scattered light of the `unscattered` (directions, counting voxels), for `flights` from each point.
+
+    Raises SssgenError where flights leave the body by other walls than they enter by: its parts overlap.
+    """
     linear = need("scipy.linalg", "scipy", "chart")
     halves = [
         _exchange(rays, projection, medium, max(flights // 2, 1), np.random.default_rng([seed, half]))
@@ -51,7 +55,11 @@ def scattered(
     del halves
     exchange *= 0.5
     system = projection.mass.toarray() - medium.albedo * exchange
-    factor = linear.cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+    try:
+        factor = linear.cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+    except np.linalg.LinAlgError:  # more light would return from the walls than reaches them
+        message = "the light inside has no solution: parts of the body overlap, or are inside each other"
+        raise failure(message, "make one surface of them, or delete the inner ones") from None
     texels: Array = linear.cho_solve(factor, medium.albedo * (exchange @ unscattered.T), check_finite=False)
     # to first order: how the mean would change if its matrix changed by half of the difference of the two
     change = linear.cho_solve(factor, medium.albedo * (difference @ (texels + unscattered.T)), check_finite=False)

@@ -211,12 +211,12 @@ def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
 
 
 @lru_cache(64)
-def half(texture: Texture) -> Texture:
-    """The texture rounded to float16. Raises SssgenError for texels beyond the range of float16."""
+def half(texture: Texture, file: str = "") -> Texture:
+    """The texture rounded to float16. Raises SssgenError for texels beyond the range of float16, of a `file`."""
     with np.errstate(over="ignore"):
         levels = [level.astype(np.float16) for level in texture.levels]
     if not all(np.isfinite(level).all() for level in levels):
-        raise failure("a texture contains NaN, infinity or numbers beyond 65504", "texels are 16-bit floats")
+        raise failure("a texture contains NaN, infinity or numbers beyond 65504", "texels are 16-bit floats", file)
     rounded = Texture(levels[0], texture.filter, texture.wrap, texture.dim)
     rounded.levels = levels
     return rounded

@@ -81,13 +81,11 @@ def _corner(corner: Iterable[float]) -> str:
 
 
 def check_lights(sidecar: BakeFile, geometry: Geometry, lights: Iterable[Light], name: str) -> None:
-    """Raises SssgenError if light is baked for another direction than that of every light of the scene, or for lights
-    from afar while a light is inside the body.
+    """Raises SssgenError if light, thickness or depth is baked for another direction than that of every light of the
+    scene, or light for lights from afar while a light is inside the body.
     """
-    if sidecar.kind != "fluence":
-        return
     lights = list(lights)
-    for number in lights_inside(geometry, lights):
+    for number in lights_inside(geometry, lights) if sidecar.kind == "fluence" else ():
         raise failure(
             f"'{name}' is baked for lights from afar, and light {number} is inside the body",
             "move the light out, or use a technique that needs no baked light",

@@ -361,4 +361,4 @@ def _read_picture(file: str, wrap: str, texture: TextureRecord) -> Texture:
     if picture.dim != texture["type"].removeprefix("sampler"):
         type_ = with_article(texture["type"])
         raise failure(f"this is a {picture.dim} texture, and '{texture['source_name']}' is {type_}", file=file)
-    return half(picture)
+    return half(picture, posix(file))
