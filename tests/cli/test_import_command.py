@@ -151,3 +151,11 @@ def test_an_import_shows_its_progress(tmp_path: Path) -> None:
     path = asset(tmp_path, materials=[GLASS, {"name": "clay"}])
     write_import(str(tmp_path / "out"), read(str(path), report), report, progress=lambda *state: states.append(state))
     assert states == [(0, 2, "glass"), (1, 2, "clay")]
+
+
+def test_a_mesh_with_a_vertex_that_is_no_number_is_not_exported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "nan.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n")
+    assert run("export-gltf", "ice", "-o", tmp_path / "ice.glb", "--mesh", tmp_path / "nan.obj") == 2
+    assert "a vertex is not a number" in capsys.readouterr().err and not (tmp_path / "ice.glb").exists()

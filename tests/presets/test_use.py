@@ -191,6 +191,17 @@ def test_the_readme_says_what_the_quality_is(words: list[str], text: str, offers
     assert text in readme and ("the same command with `--quality best`" in readme) == offers_best
 
 
+def test_options_without_an_effect_and_sizes_that_are_dark(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for words, text in (
+        (["skin_fair", "--keep-color"], "--keep-color keeps nothing"), (["skin_fair"], ""),
+        (["honey", "--size", "5000"], "the body is too large to be clear"), (["honey"], ""),
+    ):  # fmt: skip
+        preset, *options = words
+        assert main(["use", preset, block, "-o", "out", "--force", *options]) == 0
+        printed = capsys.readouterr().out
+        assert ("warning" in printed) == bool(text) and text in printed
+
+
 def test_the_preview_is_offered_with_what_it_needs(
     block: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

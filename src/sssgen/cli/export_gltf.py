@@ -32,6 +32,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.interchange.gltf_writer import export
     from sssgen.interchange.mapping_report import Report
     from sssgen.scene import mesh_files
+    from sssgen.scene.mesh import check_content
     from sssgen.scene.preview_scene import mesh_beside
 
     path = arguments.output
@@ -40,7 +41,10 @@ def run(arguments: Namespace) -> int:
     material = load_material(arguments.MATERIAL)
     mesh = arguments.mesh or mesh_beside(material)
     report = Report(material.name)
-    files = export(material, mesh_files.read(mesh) if mesh else None, path, report)
+    content = mesh_files.read(mesh) if mesh else None
+    if content is not None:
+        check_content(content, posix(mesh))
+    files = export(material, content, path, report)
     written = write_files(os.path.dirname(path) or ".", files)
     paths = [posix(file.path) for file in written]
     lines = [f"wrote {path}" for path in paths]

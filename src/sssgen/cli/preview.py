@@ -41,9 +41,10 @@ def run(arguments: Namespace) -> int:
             print(json.dumps({"ok": True, "address": line}), flush=True)
 
     async def serve() -> None:
-        # a name that stands for no file may be a wrong one: no page is opened for it; a program reads one answer
+        # a name that stands for no file may be a wrong one, as a mesh may be: no page is opened for it; a program
+        # reads one answer
         named = os.path.isfile(arguments.NAME) or os.path.isdir(os.path.join(folder("examples"), arguments.NAME))
-        early = named and not arguments.json
+        early = named and not arguments.json and not arguments.mesh
         make = functools.partial(_pictures, arguments)
         server = PreviewServer() if early else PreviewServer(make())
         await server.run(arguments.port, not arguments.no_browser, announce, make if early else None)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 """A unit → its millimetres."""
+_DARK = 0.01
+"""The share of the light that passes a clear body, in its clearest channel, below which it looks dark."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -81,7 +83,7 @@ def run(arguments: Namespace) -> int:
         mesh = used_mesh(arguments.MESH, size, arguments.material)
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
-        warnings = _warnings(request)
+        warnings = _warnings(request, bool(arguments.keep_color))
         written = write_files(folder, project_files(request, folder, arguments.force, bar))
     if mesh.part is not None:
         report_kept(mesh.part, request.shows_color, mesh.report)
@@ -135,8 +137,8 @@ def _size(text: str | None, usual: float) -> float | None:
     return size
 
 
-def _warnings(request: Request) -> list[str]:
-    """What is probably not as the user wants it."""
+def _warnings(request: Request, keeps_color: bool) -> list[str]:
+    """What is probably not as the user wants it. `keeps_color` is whether `--keep-color` was given."""
     from sssgen.scene.mesh_suitability import mesh_warnings
 
     mesh = request.mesh
@@ -148,6 +150,14 @@ def _warnings(request: Request) -> list[str]:
         )
     elif part is not None and part.others and not request.rest:
         warnings.append(f"left out are the parts with other materials: {', '.join(part.others)}")
+    if keeps_color and (request.kept is None or request.kept.base_color.image is None):
+        warnings.append("--keep-color keeps nothing: the mesh has no picture of its colours")
+    if request.clear_share < _DARK:
+        size = request.preset.size_mm
+        warnings.append(
+            f"the body is too large to be clear: {request.clear_share:.1g} of the light passes it, so that it is dark; "
+            f"choose a smaller --size ({size:g} mm is usual)"
+        )
     return warnings
 
 

@@ -71,6 +71,14 @@ class Request(NamedTuple):
         return MeshNeeds(inside, (), self.mesh.size.mean_chord / path if scattered else None, MESH)
 
     @property
+    def clear_share(self) -> float:
+        """The share of the light that passes a clear body of the mesh's mean chord, in its clearest channel; 1 for
+        others."""
+        if self.preset.scatters or any(self.preset.sheet):
+            return 1.0
+        return math.exp(-min(self.preset.interior(self.mesh.size.unit_mm).extinction) * self.mesh.size.mean_chord)
+
+    @property
     def shows_color(self) -> bool:
         """Whether the material has the detail of the mesh's colours: baked light has the colour of its medium."""
         return self.keeps_color and not self.baked

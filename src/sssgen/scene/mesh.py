@@ -146,14 +146,20 @@ class Mesh(Geometry):
         return MeshRays(self.triangles.places, self.triangles.corners)
 
 
-def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
-    vertices, faces, uv, uv2, color, own_normals = content
+def check_content(content: mesh_files.FileContent, shown: str) -> None:
+    """Raises SssgenError for a file without triangles, or with faulty ones; `shown` is its name in messages."""
+    vertices, faces = content.vertices, content.faces
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise failure("a triangle refers to a missing vertex", "export it again", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
         raise failure(f"a vertex is not a number, or beyond {FARTHEST:g}", "scale the mesh, or export it again", shown)
+
+
+def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
+    check_content(content, shown)
+    vertices, faces, uv, uv2, color, own_normals = content
     uv, uv2 = _usable(uv, (len(vertices), 2)), _usable(uv2, (len(vertices), 2))
     color = _usable(color, (len(vertices), 4))
     own_normals = _usable(own_normals, (len(vertices), 3))
