@@ -25,6 +25,8 @@ RESOLUTION = 96
 """Cells along a side of a distance function's grid, and half of the steps around a torus and its tube."""
 
 _NEWTON_STEPS = 4
+_ON_LEVEL = 1e-6
+"""The distance, in cells, at which a vertex is on the zero level."""
 
 
 def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, Indices]:
@@ -150,15 +152,20 @@ _COARSEST = 12
 def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -> Array:
     """Vertices moved onto the zero level by Newton steps along the gradient, at most by `farthest`."""
     step = 1e-4 * farthest
-    points = vertices
+    points, first = vertices.copy(), cut(vertices)
+    values = first.copy()
     for _ in range(_NEWTON_STEPS):
-        slope = np.stack([cut(points + step * axis) - cut(points - step * axis) for axis in np.eye(3)], axis=1)
-        slope /= 2.0 * step
+        off = np.flatnonzero(np.abs(values) > _ON_LEVEL * farthest)
+        if not len(off):
+            break
+        at = points[off]
+        slope = np.stack([cut(at + step * axis) - cut(at - step * axis) for axis in np.eye(3)], axis=1) / (2.0 * step)
         square = np.maximum(np.einsum("nc,nc->n", slope, slope), 1e-6)
-        moved = points - (cut(points) / square)[:, None] * slope - vertices
+        moved = at - (values[off] / square)[:, None] * slope - vertices[off]
         length = np.linalg.norm(moved, axis=1, keepdims=True)
-        points = vertices + moved * np.minimum(1.0, farthest / np.maximum(length, 1e-30))
-    closer = np.abs(cut(points)) <= np.abs(cut(vertices))
+        points[off] = vertices[off] + moved * np.minimum(1.0, farthest / np.maximum(length, 1e-30))
+        values[off] = cut(points[off])
+    closer = np.abs(values) <= np.abs(first)
     return np.where(closer[:, None], points, vertices)
 
 
