@@ -19,7 +19,7 @@ from sssgen.material.medium_look import look_keys
 from sssgen.material.model import MOST_LEVELS, NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
-from sssgen.material.values import HEX_COLOUR, is_colour, limits
+from sssgen.material.values import HEX_COLOUR, has_opacity, is_colour, limits
 from sssgen.scene import scene_keys
 from sssgen.scene.measured.media import media
 from sssgen.scene.toml_table import ANY, Key
@@ -107,7 +107,8 @@ def _value(uniform: Uniform) -> Schema:
     if count == 1 and not isinstance(uniform.type, Array):
         return one
     # a matrix or a list may be nested: then only its innermost elements are numbers
-    flat: Schema = {"type": "array", "items": one, "minItems": count, "maxItems": count}
+    items = [one, one, one, {"type": "number", "minimum": 0.0, "maximum": 1.0}] if has_opacity(uniform) else one
+    flat: Schema = {"type": "array", "items": items, "minItems": count, "maxItems": count}
     nested: Schema = {"type": "array", "items": {"type": "array"}, "minItems": 1, "maxItems": count}
     several = [flat, nested] if isinstance(uniform.type, Array | Matrix) else [flat]
     if is_colour(uniform):

@@ -43,7 +43,7 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
         raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this has {count}")
     nested = any(isinstance(element, list) for element in raw) if isinstance(raw, list) else False
     values = tuple(_number(uniform, element, None if nested else index) for index, element in enumerate(flat))
-    if is_colour(uniform) and len(values) == 4 and not 0.0 <= values[3] <= 1.0:
+    if has_opacity(uniform) and not 0.0 <= values[3] <= 1.0:
         hint = 'a colour goes from 0 to 1; for bytes write "#rrggbbaa"'
         raise WrongValue(f"{values[3]:g} is no opacity of '{uniform.name}'", hint, None if nested else 3)
     return values
@@ -89,6 +89,11 @@ def value_form(uniform: Uniform) -> str:
 def is_colour(uniform: Uniform) -> bool:
     """Whether the uniform is declared as a colour."""
     return components(uniform.type) in (3, 4) and any(name == "source_color" for name, _ in uniform.hints)
+
+
+def has_opacity(uniform: Uniform) -> bool:
+    """Whether the fourth number of a value is an opacity, from 0 to 1."""
+    return is_colour(uniform) and components(uniform.type) == 4 and not isinstance(uniform.type, Array)
 
 
 def limits(uniform: Uniform) -> tuple[float, float]:
