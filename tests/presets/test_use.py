@@ -47,6 +47,19 @@ def test_a_project_has_the_material_the_mesh_and_what_opens_it(target: str, bloc
     assert f"sssgen use jade {block} --target {target}" in Path("out", own, "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize(("words", "name"), [("Wax {}", "wax"), ("skin-fair {}", "skin_fair"), ("{} Jade", "jade")])
+def test_names_of_presets_are_read_as_people_write_them(words: str, name: str, block: str) -> None:
+    """Before or behind the mesh, too."""
+    assert main(["use", *words.format(block).split(), "-o", "out"]) == 0
+    assert f"sssgen use {name} {block} --target" in Path("out", "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("target", [name for name, engine in ENGINES.items() if engine.is_page])
+def test_a_page_asks_for_no_icon(target: str, block: str) -> None:
+    assert main(["use", "wax", block, "--target", target, "-o", "out"]) == 0
+    assert '<link rel="icon" href="data:,">' in Path("out", "index.html").read_text(encoding="utf-8")
+
+
 def test_a_repeated_call_changes_nothing(block: str, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["use", "wax", block, "-o", "out"]
     assert main(command) == 0 and "kept" not in capsys.readouterr().out
@@ -135,6 +148,7 @@ def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
     "arguments, message",
     [
         (["use", "waxx", "block.obj", "-o", "out"], "did you mean 'wax'"),
+        (["use", "block.obj", "waxx", "-o", "out"], "unknown preset 'waxx'"),
         (["use", "wax", "blok.obj", "-o", "out"], "cannot find the mesh"),
         (["use", "wax", "block.obj", "-t", "threjs", "-o", "out"], "did you mean 'threejs'"),
         (["use", "wax", "block.obj", "-t", "unreal", "-o", "out"], "there is no project for the target 'unreal' yet"),

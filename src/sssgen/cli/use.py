@@ -38,7 +38,7 @@ def add_options(parser: ArgumentParser) -> None:
         "Presets: sssgen list presets."
     )
     add = parser.add_argument
-    add("PRESET", help="a ready material: a name of `sssgen list presets`")
+    add("PRESET", help="a ready material: a name of `sssgen list presets`, in any case")
     add("MESH", help="an .obj, .ply, .stl, .glb or .gltf file; closed, with its normals outwards")
     add("--target", "-t", metavar="T", default="threejs", help="the engine (default: threejs)")
     add_output(parser, "DIR", "the folder to write to", required=True)
@@ -72,7 +72,9 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.request import Request
     from sssgen.presets.used_mesh import used_mesh
 
+    _order(arguments)
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
+    arguments.PRESET = chosen.name
     _check_target(target, arguments.open)
     if target == "gltf" and arguments.quality != "good":
         raise failure("a glTF file has neither lobes nor baked light", "leave --quality out")
@@ -103,6 +105,15 @@ def run(arguments: Namespace) -> int:
     if arguments.open:
         _show(folder)
     return OK
+
+
+def _order(arguments: Namespace) -> None:
+    """Exchanges the preset and the mesh where they are given in the other order."""
+    from sssgen.scene.mesh_files import SUFFIXES
+
+    first, second = (word.lower().endswith(SUFFIXES) for word in (arguments.PRESET, arguments.MESH))
+    if first and not second:
+        arguments.PRESET, arguments.MESH = arguments.MESH, arguments.PRESET
 
 
 def _check_target(target: str, opens: bool) -> None:
