@@ -13,6 +13,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.presets.engines import ENGINES
 from sssgen.presets.used_mesh import used_mesh
+from sssgen.presets.written_project import RECORD
 from sssgen.scene.mesh_files import read
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[import]'")
@@ -74,6 +75,42 @@ def test_edited_files_are_kept_without_force(block: str, capsys: pytest.CaptureF
     assert main(command) == 2 and "main.js" in capsys.readouterr().err
     assert page.read_text(encoding="utf-8") == "// mine\n"
     assert main([*command, "--force"]) == 0 and "createMaterial" in page.read_text(encoding="utf-8")
+
+
+def test_another_project_replaces_one_that_nobody_edited(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    Path("out", "mine.txt").write_text("notes", encoding="utf-8")
+    assert main(["use", "jade", block, "-o", "out"]) == 0 and "removed out/wax.js\n" in capsys.readouterr().out
+    assert not list(Path("out").glob("wax.*")) and "jade.js" in Path("out", "main.js").read_text(encoding="utf-8")
+    assert main(["use", "jade", block, "-t", "godot", "-o", "out"]) == 0
+    assert not Path("out", "index.html").exists() and not Path("out", "library").exists()
+    assert Path("out", "mine.txt").exists()
+
+
+@pytest.mark.parametrize("edited", ["wax.toml", "main.js"])
+def test_another_project_replaces_no_edits(edited: str, block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Neither where the new project has a file of the name, nor where it has none."""
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    with Path("out", edited).open("a", encoding="utf-8") as file:
+        file.write("\n")
+    before = {path: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()}
+    assert main(["use", "jade", block, "-o", "out"]) == 2
+    error = capsys.readouterr().err
+    assert f"the folder holds wax on block.obj for threejs, and files of it were edited: {edited}" in error
+    assert f"--> out/{edited}" in error and "--force" in error
+    assert {path: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()} == before
+    assert main(["use", "jade", block, "-o", "out", "--force"]) == 0
+    assert Path("out", "wax.toml").exists() == (edited == "wax.toml") and not Path("out", "wax.js").exists()
+
+
+@pytest.mark.parametrize("record", ["", "[]", '{"project": "wax", "files": {"../block.obj": ""}}'])
+def test_without_a_right_record_nothing_is_replaced(
+    record: str, block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    Path("out", RECORD).write_text(record, encoding="utf-8")
+    assert main(["use", "jade", block, "-o", "out"]) == 2
+    assert "the file already exists, with another content" in capsys.readouterr().err and Path(block).exists()
 
 
 def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:

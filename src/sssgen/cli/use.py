@@ -61,7 +61,7 @@ def add_options(parser: ArgumentParser) -> None:
         help="keep the detail of a glTF file's colours (default: for skin, leaves and paper)",
     )  # fmt: skip
     add("--open", action="store_true", help="show the page in a browser, until Ctrl+C")
-    add("--force", action="store_true", help="replace files that were there before, also edited ones")
+    add("--force", action="store_true", help="replace files that were edited, or that other commands wrote")
 
 
 def run(arguments: Namespace) -> int:
@@ -71,6 +71,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.project_files import project_files
     from sssgen.presets.request import Request
     from sssgen.presets.used_mesh import used_mesh
+    from sssgen.presets.written_project import written_before
 
     _order(arguments)
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
@@ -86,18 +87,22 @@ def run(arguments: Namespace) -> int:
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         warnings = _warnings(request, bool(arguments.keep_color))
-        written = write_files(folder, project_files(request, folder, arguments.force, bar))
+        earlier = written_before(request, folder)
+        files = project_files(request, folder, earlier, arguments.force, bar)
+        written = write_files(folder, files)
+        removed = earlier.remove_others(folder, files)
     if mesh.part is not None:
         report_kept(mesh.part, request.shows_color, mesh.report)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
     lines += [
+        *(f"removed {posix(path)}" for path in removed),
         *_kept_lines(mesh.report),
         *(f"warning: {warning}" for warning in warnings),
         _size_line(request, arguments.size),
         *_next_lines(request, folder),
     ]
     report = {
-        "files": [posix(file.path) for file in written],
+        "files": [posix(file.path) for file in written], "removed": [posix(path) for path in removed],
         "size_mm": mesh.longest_mm, "unit_mm": mesh.size.unit_mm,
         "warnings": warnings, "report": mesh.report.as_json(),
     }  # fmt: skip
