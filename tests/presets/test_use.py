@@ -12,7 +12,7 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.presets.engines import ENGINES
-from sssgen.presets.used_mesh import used_mesh
+from sssgen.presets.used_mesh import Pose, used_mesh
 from sssgen.presets.written_project import RECORD
 from sssgen.scene.mesh_files import read
 
@@ -123,6 +123,29 @@ def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:
     assert content.normals is not None and np.linalg.norm(content.normals, axis=1) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize(
+    ("pose", "low", "high"),
+    [
+        (Pose(turn=180.0), (-2, 0, -1), (0, 1, 0)),
+        (Pose(turn=90.0), (0, 0, -2), (1, 1, 0)),
+        (Pose(z_is_up=True), (0, 0, -1), (2, 1, 0)),
+        (Pose(z_is_up=True, turn=-90.0), (0, 0, 0), (1, 1, 2)),
+    ],
+)
+def test_a_body_is_turned(pose: Pose, low: tuple[int, ...], high: tuple[int, ...], block: str) -> None:
+    mesh = used_mesh(block, 40.0, pose=pose)
+    assert (mesh.low, mesh.high) == (pytest.approx(low), pytest.approx(high))
+    content, center = mesh.content, 0.5 * np.add(low, high)
+    first, second, third = np.moveaxis(content.vertices[content.faces], 1, 0)
+    assert np.einsum("nc,nc->n", np.cross(second - first, third - first), first - center).min() > 0.0
+    assert content.normals is not None and np.einsum("nc,nc->n", content.normals, content.vertices - center).min() > 0.0
+
+
+def test_the_readme_says_how_a_body_was_turned(block: str) -> None:
+    assert main(["use", "wax", block, "-o", "out", "--turn", "180", "--up", "z"]) == 0
+    assert "--turn 180 --up z" in Path("out", "README.md").read_text(encoding="utf-8")
+
+
 def test_a_mesh_that_is_inside_out_is_turned(block: str) -> None:
     import trimesh
 
@@ -198,6 +221,7 @@ def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
         (["use", "wax", "block.obj", "-t", "godot", "-o", "out", "--open"], "--open shows pages"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "0"], "cannot be 0 mm large"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "nan"], "cannot be nan mm large"),
+        (["use", "wax", "block.obj", "-o", "out", "--turn", "inf"], "cannot be turned by inf degrees"),
         (["use", "wax", "block.obj", "-o", "block.obj"], "block.obj"),
     ],
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import re
 import shlex
@@ -51,6 +52,12 @@ def add_options(parser: ArgumentParser) -> None:
         "unit of the mesh is a metre, as in glTF",
     )  # fmt: skip
     add(
+        "--turn", type=float, default=0.0, metavar="DEGREES",
+        help="turn the body about its vertical axis: 180 where the page shows its back (default: the view looks at its "
+        "+z side, the front in glTF)",
+    )  # fmt: skip
+    add("--up", choices=("y", "z"), default="y", help="the axis of the file that points up (default: y); z: as in CAD")
+    add(
         "--material",
         metavar="NAME",
         default="",
@@ -70,7 +77,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.preset import preset
     from sssgen.presets.project_files import project_files
     from sssgen.presets.request import Request
-    from sssgen.presets.used_mesh import used_mesh
+    from sssgen.presets.used_mesh import Pose, used_mesh
     from sssgen.presets.written_project import written_before
 
     _order(arguments)
@@ -80,10 +87,12 @@ def run(arguments: Namespace) -> int:
     if target == "gltf" and arguments.quality != "good":
         raise failure("a glTF file has neither lobes nor baked light", "leave --quality out")
     size = _size(arguments.size, chosen.size_mm)
+    if not math.isfinite(arguments.turn):
+        raise failure(f"a body cannot be turned by {arguments.turn:g} degrees", "--turn 180 shows the other side")
     check_folder(folder)
     with ProgressBar() as bar:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
-        mesh = used_mesh(arguments.MESH, size, arguments.material)
+        mesh = used_mesh(arguments.MESH, size, arguments.material, Pose(arguments.up == "z", arguments.turn))
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         warnings = _warnings(request, bool(arguments.keep_color))
@@ -214,6 +223,8 @@ def _command(arguments: Namespace) -> str:
     words = ["sssgen", "use", arguments.PRESET, posix(arguments.MESH), "--target", arguments.target]
     words += ["--quality", arguments.quality]
     words += ["--size", arguments.size] if arguments.size else []
+    words += ["--turn", f"{arguments.turn:g}"] if arguments.turn else []
+    words += ["--up", arguments.up] if arguments.up != "y" else []
     words += ["--material", arguments.material] if arguments.material else []
     if arguments.keep_color is not None:
         words.append("--keep-color" if arguments.keep_color else "--no-keep-color")
