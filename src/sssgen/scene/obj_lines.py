@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -10,6 +11,9 @@ _LEAST = {b"v": 3, b"vt": 1, b"vn": 3}
 _NOUNS = {b"v": "vertex", b"vt": "texture coordinate", b"vn": "normal"}
 _CORNER = (b"v", b"vt", b"vn")
 """What the numbers of a corner of a triangle refer to."""
+_VERTEX = re.compile(rb"^v[ \t][^\r\n]*", re.MULTILINE)
+_OF_ZERO = re.compile(rb"^f[^\n]*[ \t]0[/\s]", re.MULTILINE)
+"""A triangle of vertex 0"""
 
 
 class FaultyLine(NamedTuple):
@@ -25,10 +29,8 @@ def is_doubtful(data: bytes, has_uv: bool) -> bool:
 
     These are rows of numbers of different lengths, triangles of vertex 0, and texture coordinates that were not read.
     """
-    lines = data.splitlines()
-    lengths = {len(line.split()) for line in lines if line.startswith(b"v ")}
-    from_zero = any(b" 0 " in line or b" 0/" in line or line.endswith(b" 0") for line in lines if line[:2] == b"f ")
-    return len(lengths) > 1 or from_zero or (not has_uv and b"\nvt " in data)
+    lengths = {len(row.split()) for row in _VERTEX.findall(data)}
+    return len(lengths) > 1 or _OF_ZERO.search(data) is not None or (not has_uv and b"\nvt " in data)
 
 
 def faulty_line(data: bytes) -> FaultyLine | None:
