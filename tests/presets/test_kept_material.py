@@ -161,6 +161,9 @@ def test_several_materials(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert not report["warnings"] and "rest.glb" in Path("out/main.js").read_text(encoding="utf-8")
     rest = read("out/rest.glb")
     assert rest.vertices[:, 0].min() > 2.0 and rest.vertices[:, 0].max() == pytest.approx(9.5)
+    used("skin_fair", "two.gltf", "--material", "Skin", "--turn", "180", "--up", "z", capsys=capsys)
+    moved = rest.vertices[:, [0, 2, 1]] * [-1.0, 1.0, 1.0]  # (x, y, z) → (x, z, -y), then (-x, y, -z)
+    assert np.sort(read("out/rest.glb").vertices, axis=0) == pytest.approx(np.sort(moved, axis=0), abs=1e-6)
     report = used("skin_fair", "two.gltf", "--material", "Skin", "--target", "gltf", capsys=capsys)
     assert "left out are the parts with other materials: Eyes" in report["warnings"]
     assert read("out/body.glb").vertices[:, 0].max() == pytest.approx(2.0)

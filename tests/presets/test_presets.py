@@ -32,6 +32,11 @@ def required(name: str, quality: str) -> tuple[str, ...]:
     return requirements(parse_material(text, f"{name}.toml").stages)
 
 
+@pytest.mark.parametrize("text", ["Skin_Fair", "skin fair", " SKIN-fair", "skin - fair"])
+def test_a_name_has_any_case_and_spaces_or_hyphens(text: str) -> None:
+    assert preset(text).name == "skin_fair"
+
+
 @pytest.mark.parametrize("name", presets())
 def test_a_preset_is_a_material_in_each_quality(name: str) -> None:
     row = preset(name)

@@ -12,7 +12,8 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.presets.engines import ENGINES
-from sssgen.presets.used_mesh import used_mesh
+from sssgen.presets.used_mesh import Pose, used_mesh
+from sssgen.presets.written_project import RECORD
 from sssgen.scene.mesh_files import read
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[import]'")
@@ -47,6 +48,19 @@ def test_a_project_has_the_material_the_mesh_and_what_opens_it(target: str, bloc
     assert f"sssgen use jade {block} --target {target}" in Path("out", own, "README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize(("words", "name"), [("Wax {}", "wax"), ("skin-fair {}", "skin_fair"), ("{} Jade", "jade")])
+def test_names_of_presets_are_read_as_people_write_them(words: str, name: str, block: str) -> None:
+    """Before or behind the mesh, too."""
+    assert main(["use", *words.format(block).split(), "-o", "out"]) == 0
+    assert f"sssgen use {name} {block} --target" in Path("out", "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("target", [name for name, engine in ENGINES.items() if engine.is_page])
+def test_a_page_asks_for_no_icon(target: str, block: str) -> None:
+    assert main(["use", "wax", block, "--target", target, "-o", "out"]) == 0
+    assert '<link rel="icon" href="data:,">' in Path("out", "index.html").read_text(encoding="utf-8")
+
+
 def test_a_repeated_call_changes_nothing(block: str, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["use", "wax", block, "-o", "out"]
     assert main(command) == 0 and "kept" not in capsys.readouterr().out
@@ -63,6 +77,42 @@ def test_edited_files_are_kept_without_force(block: str, capsys: pytest.CaptureF
     assert main([*command, "--force"]) == 0 and "createMaterial" in page.read_text(encoding="utf-8")
 
 
+def test_another_project_replaces_one_that_nobody_edited(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    Path("out", "mine.txt").write_text("notes", encoding="utf-8")
+    assert main(["use", "jade", block, "-o", "out"]) == 0 and "removed out/wax.js\n" in capsys.readouterr().out
+    assert not list(Path("out").glob("wax.*")) and "jade.js" in Path("out", "main.js").read_text(encoding="utf-8")
+    assert main(["use", "jade", block, "-t", "godot", "-o", "out"]) == 0
+    assert not Path("out", "index.html").exists() and not Path("out", "library").exists()
+    assert Path("out", "mine.txt").exists()
+
+
+@pytest.mark.parametrize("edited", ["wax.toml", "main.js"])
+def test_another_project_replaces_no_edits(edited: str, block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Neither where the new project has a file of the name, nor where it has none."""
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    with Path("out", edited).open("a", encoding="utf-8") as file:
+        file.write("\n")
+    before = {path: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()}
+    assert main(["use", "jade", block, "-o", "out"]) == 2
+    error = capsys.readouterr().err
+    assert f"the folder holds wax on block.obj for threejs, and files of it were edited: {edited}" in error
+    assert f"--> out/{edited}" in error and "--force" in error
+    assert {path: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()} == before
+    assert main(["use", "jade", block, "-o", "out", "--force"]) == 0
+    assert Path("out", "wax.toml").exists() == (edited == "wax.toml") and not Path("out", "wax.js").exists()
+
+
+@pytest.mark.parametrize("record", ["", "[]", '{"project": "wax", "files": {"../block.obj": ""}}'])
+def test_without_a_right_record_nothing_is_replaced(
+    record: str, block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    Path("out", RECORD).write_text(record, encoding="utf-8")
+    assert main(["use", "jade", block, "-o", "out"]) == 2
+    assert "the file already exists, with another content" in capsys.readouterr().err and Path(block).exists()
+
+
 def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:
     mesh = used_mesh(block, 40.0)
     assert (mesh.low, mesh.high) == ((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
@@ -71,6 +121,29 @@ def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:
     Path("body.glb").write_bytes(mesh.glb)
     content = read("body.glb")
     assert content.normals is not None and np.linalg.norm(content.normals, axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("pose", "low", "high"),
+    [
+        (Pose(turn=180.0), (-2, 0, -1), (0, 1, 0)),
+        (Pose(turn=90.0), (0, 0, -2), (1, 1, 0)),
+        (Pose(z_is_up=True), (0, 0, -1), (2, 1, 0)),
+        (Pose(z_is_up=True, turn=-90.0), (0, 0, 0), (1, 1, 2)),
+    ],
+)
+def test_a_body_is_turned(pose: Pose, low: tuple[int, ...], high: tuple[int, ...], block: str) -> None:
+    mesh = used_mesh(block, 40.0, pose=pose)
+    assert (mesh.low, mesh.high) == (pytest.approx(low), pytest.approx(high))
+    content, center = mesh.content, 0.5 * np.add(low, high)
+    first, second, third = np.moveaxis(content.vertices[content.faces], 1, 0)
+    assert np.einsum("nc,nc->n", np.cross(second - first, third - first), first - center).min() > 0.0
+    assert content.normals is not None and np.einsum("nc,nc->n", content.normals, content.vertices - center).min() > 0.0
+
+
+def test_the_readme_says_how_a_body_was_turned(block: str) -> None:
+    assert main(["use", "wax", block, "-o", "out", "--turn", "180", "--up", "z"]) == 0
+    assert "--turn 180 --up z" in Path("out", "README.md").read_text(encoding="utf-8")
 
 
 def test_a_mesh_that_is_inside_out_is_turned(block: str) -> None:
@@ -135,6 +208,7 @@ def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
     "arguments, message",
     [
         (["use", "waxx", "block.obj", "-o", "out"], "did you mean 'wax'"),
+        (["use", "block.obj", "waxx", "-o", "out"], "unknown preset 'waxx'"),
         (["use", "wax", "blok.obj", "-o", "out"], "cannot find the mesh"),
         (["use", "wax", "block.obj", "-t", "threjs", "-o", "out"], "did you mean 'threejs'"),
         (["use", "wax", "block.obj", "-t", "unreal", "-o", "out"], "there is no project for the target 'unreal' yet"),
@@ -147,6 +221,7 @@ def test_sheets_are_doubtful_but_for_fast_and_for_presets_of_sheets(
         (["use", "wax", "block.obj", "-t", "godot", "-o", "out", "--open"], "--open shows pages"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "0"], "cannot be 0 mm large"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "nan"], "cannot be nan mm large"),
+        (["use", "wax", "block.obj", "-o", "out", "--turn", "inf"], "cannot be turned by inf degrees"),
         (["use", "wax", "block.obj", "-o", "block.obj"], "block.obj"),
     ],
 )

@@ -68,6 +68,18 @@ def test_the_time_left_is_that_of_the_current_stage(
     assert capsys.readouterr().err == "1 of 10: slow stage; about 18 s left\n"
 
 
+def test_each_step_has_its_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    clock = [0.0]
+    monkeypatch.setattr("sssgen.support.progress.time.monotonic", lambda: clock[0])
+    with progress.ProgressBar(one_line=True) as bar:
+        for step, total in ((1, 10), (2, 20)):
+            for item in range(total):
+                clock[0] += 2.0
+                bar(item, total, f"step {step} of 2")
+    lines = ["1 of 10: step 1 of 2; about 18 s left", "1 of 20: step 2 of 2; about 38 s left"]
+    assert capsys.readouterr().err.splitlines() == lines
+
+
 def test_a_log_shows_an_item_that_takes_long(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

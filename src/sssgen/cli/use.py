@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import re
 import shlex
@@ -38,7 +39,7 @@ def add_options(parser: ArgumentParser) -> None:
         "Presets: sssgen list presets."
     )
     add = parser.add_argument
-    add("PRESET", help="a ready material: a name of `sssgen list presets`")
+    add("PRESET", help="a ready material: a name of `sssgen list presets`, in any case")
     add("MESH", help="an .obj, .ply, .stl, .glb or .gltf file; closed, with its normals outwards")
     add("--target", "-t", metavar="T", default="threejs", help="the engine (default: threejs)")
     add_output(parser, "DIR", "the folder to write to", required=True)
@@ -51,6 +52,12 @@ def add_options(parser: ArgumentParser) -> None:
         "unit of the mesh is a metre, as in glTF",
     )  # fmt: skip
     add(
+        "--turn", type=float, default=0.0, metavar="DEGREES",
+        help="turn the body about its vertical axis: 180 where the page shows its back (default: the view looks at its "
+        "+z side, the front in glTF)",
+    )  # fmt: skip
+    add("--up", choices=("y", "z"), default="y", help="the axis of the file that points up (default: y); z: as in CAD")
+    add(
         "--material",
         metavar="NAME",
         default="",
@@ -61,7 +68,7 @@ def add_options(parser: ArgumentParser) -> None:
         help="keep the detail of a glTF file's colours (default: for skin, leaves and paper)",
     )  # fmt: skip
     add("--open", action="store_true", help="show the page in a browser, until Ctrl+C")
-    add("--force", action="store_true", help="replace files that were there before, also edited ones")
+    add("--force", action="store_true", help="replace files that were edited, or that other commands wrote")
 
 
 def run(arguments: Namespace) -> int:
@@ -70,32 +77,41 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.preset import preset
     from sssgen.presets.project_files import project_files
     from sssgen.presets.request import Request
-    from sssgen.presets.used_mesh import used_mesh
+    from sssgen.presets.used_mesh import Pose, used_mesh
+    from sssgen.presets.written_project import written_before
 
+    _order(arguments)
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
+    arguments.PRESET = chosen.name
     _check_target(target, arguments.open)
     if target == "gltf" and arguments.quality != "good":
         raise failure("a glTF file has neither lobes nor baked light", "leave --quality out")
     size = _size(arguments.size, chosen.size_mm)
+    if not math.isfinite(arguments.turn):
+        raise failure(f"a body cannot be turned by {arguments.turn:g} degrees", "--turn 180 shows the other side")
     check_folder(folder)
     with ProgressBar() as bar:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
-        mesh = used_mesh(arguments.MESH, size, arguments.material)
+        mesh = used_mesh(arguments.MESH, size, arguments.material, Pose(arguments.up == "z", arguments.turn))
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         warnings = _warnings(request, bool(arguments.keep_color))
-        written = write_files(folder, project_files(request, folder, arguments.force, bar))
+        earlier = written_before(request, folder)
+        files = project_files(request, folder, earlier, arguments.force, bar)
+        written = write_files(folder, files)
+        removed = earlier.remove_others(folder, files)
     if mesh.part is not None:
         report_kept(mesh.part, request.shows_color, mesh.report)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
     lines += [
+        *(f"removed {posix(path)}" for path in removed),
         *_kept_lines(mesh.report),
         *(f"warning: {warning}" for warning in warnings),
         _size_line(request, arguments.size),
         *_next_lines(request, folder),
     ]
     report = {
-        "files": [posix(file.path) for file in written],
+        "files": [posix(file.path) for file in written], "removed": [posix(path) for path in removed],
         "size_mm": mesh.longest_mm, "unit_mm": mesh.size.unit_mm,
         "warnings": warnings, "report": mesh.report.as_json(),
     }  # fmt: skip
@@ -103,6 +119,15 @@ def run(arguments: Namespace) -> int:
     if arguments.open:
         _show(folder)
     return OK
+
+
+def _order(arguments: Namespace) -> None:
+    """Exchanges the preset and the mesh where they are given in the other order."""
+    from sssgen.scene.mesh_files import SUFFIXES
+
+    first, second = (word.lower().endswith(SUFFIXES) for word in (arguments.PRESET, arguments.MESH))
+    if first and not second:
+        arguments.PRESET, arguments.MESH = arguments.MESH, arguments.PRESET
 
 
 def _check_target(target: str, opens: bool) -> None:
@@ -198,6 +223,8 @@ def _command(arguments: Namespace) -> str:
     words = ["sssgen", "use", arguments.PRESET, posix(arguments.MESH), "--target", arguments.target]
     words += ["--quality", arguments.quality]
     words += ["--size", arguments.size] if arguments.size else []
+    words += ["--turn", f"{arguments.turn:g}"] if arguments.turn else []
+    words += ["--up", arguments.up] if arguments.up != "y" else []
     words += ["--material", arguments.material] if arguments.material else []
     if arguments.keep_color is not None:
         words.append("--keep-color" if arguments.keep_color else "--no-keep-color")

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import copy
+import json
 from collections.abc import Iterable
 from typing import Any
+
+import numpy as np
 
 from sssgen.interchange.gltf_buffers import Buffers
 from sssgen.interchange.gltf_container import open_file
 from sssgen.interchange.mesh_glb import Buffer, glb
+from sssgen.scene.arrays import Array
 
 _JPEG = b"\xff\xd8"
 
@@ -40,6 +44,19 @@ def without_material(path: str, material: str) -> bytes:
             node.pop(key, None)
     content.get("extensions", {}).pop("KHR_lights_punctual", None)
     return glb(content, bytes(buffer.data))
+
+
+def turned(data: bytes, matrix: Array) -> bytes:
+    """A GLB file of `without_material` behind a rotation (3, 3) of columns: a node above those of its scene."""
+    length = int.from_bytes(data[12:16], "little")
+    content = json.loads(data[20 : 20 + length])
+    shown = content.get("scene", 0)
+    for scene in content.get("scenes", ())[shown : shown + 1]:
+        placed = np.eye(4)
+        placed[:3, :3] = matrix
+        content["nodes"].append({"children": scene["nodes"], "matrix": placed.T.ravel().tolist()})
+        content |= {"scenes": [scene | {"nodes": [len(content["nodes"]) - 1]}], "scene": 0}
+    return glb(content, data[28 + length :])
 
 
 def _remove_triangles(content: dict[str, Any], materials: Iterable[int]) -> bool:

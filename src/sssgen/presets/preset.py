@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -133,11 +134,12 @@ def presets() -> Mapping[str, Preset]:
 
 
 def preset(name: str) -> Preset:
-    """The preset of a name. Raises SssgenError for an unknown one."""
+    """The preset of a name: in any case, with spaces or hyphens for underscores. Raises SssgenError for another one."""
     table = presets()
-    if name not in table:
-        raise failure(f"unknown preset '{name}'", did_you_mean(name, table) or f"presets: {', '.join(table)}")
-    return table[name]
+    plain = re.sub(r"[\s-]+", "_", name.strip().lower())
+    if plain not in table:
+        raise failure(f"unknown preset '{name}'", did_you_mean(plain, table) or f"presets: {', '.join(table)}")
+    return table[plain]
 
 
 def _share(color: Color) -> tuple[Color, float]:

@@ -14,22 +14,24 @@ from sssgen.presets.engine_project import engine_files, material_files
 from sssgen.presets.preset_stages import RESPONSE
 from sssgen.presets.project_templates import Files
 from sssgen.presets.request import RANK, Request
+from sssgen.presets.written_project import WrittenProject, record
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import check_unchanged, write_files
 from sssgen.support.paths import posix
 from sssgen.support.progress import Progress
 
 
-def project_files(request: Request, folder: str, force: bool, progress: Progress) -> Files:
+def project_files(request: Request, folder: str, earlier: WrittenProject, force: bool, progress: Progress) -> Files:
     """The files by their names in `folder`, which is only read.
 
-    Without `force` a file that is there with another content is an error, as it may have been edited; a bake of another
-    body or medium is replaced. Raises SssgenError also for a body that cannot be baked, and where the target cannot
-    express the material.
+    Without `force` a file that is there with another content is an error, unless it is as the `earlier` call wrote it;
+    a bake of another body or medium is replaced. Raises SssgenError also for a body that cannot be baked, and where the
+    target cannot express the material.
     """
     files = material_files(request)
     if not force:
-        check_unchanged(folder, files)
+        earlier.check_edits(folder)
+        check_unchanged(folder, _others(files, earlier))
     with tempfile.TemporaryDirectory() as draft:
         write_files(draft, files)
         if request.baked:
@@ -39,8 +41,14 @@ def project_files(request: Request, folder: str, force: bool, progress: Progress
         progress(0, 1, "emitting")
         emitted = engine_files(request, draft)
     if not force:
-        check_unchanged(folder, emitted)
-    return files | emitted
+        check_unchanged(folder, _others(emitted, earlier))
+    files |= emitted
+    return files | record(request, files)
+
+
+def _others(files: Files, earlier: WrittenProject) -> Files:
+    """The files that the earlier call did not write."""
+    return {name: content for name, content in files.items() if name not in earlier.files}
 
 
 def _baked_light(request: Request, folder: str, draft: str, progress: Progress) -> Files:

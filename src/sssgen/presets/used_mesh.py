@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sssgen.interchange.gltf_rest import turned
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import mean_chord
 from sssgen.interchange.mesh_glb import mesh_file
@@ -18,6 +19,26 @@ from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_files import FileContent
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
+
+
+class Pose(NamedTuple):
+    """How the body of a file is put into the view, whose up is +y and which looks at the body from +z."""
+
+    z_is_up: bool = False
+    """Whether the file's up is +z, and its front -y, as in Blender and CAD"""
+    turn: float = 0.0
+    """Degrees about up, counter-clockwise seen from above"""
+
+    @property
+    def matrix(self) -> Array:
+        """The rotation (3, 3) of columns."""
+        sine, cosine = np.sin(np.radians(self.turn)), np.cos(np.radians(self.turn))
+        turned = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]]).round(15)
+        return turned @ _Y_FROM_Z if self.z_is_up else turned
+
+
+_Y_FROM_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+_AS_IT_IS = Pose()
 
 
 class UsedMesh(NamedTuple):
@@ -33,7 +54,7 @@ class UsedMesh(NamedTuple):
     high: tuple[float, float, float]
     """The corners of its box"""
     geometry: Mesh
-    """The body as rays see it"""
+    """The body as rays see it, as it is in the file"""
     part: GltfPart | None
     """Of a glTF file"""
     report: Report
@@ -55,14 +76,17 @@ class UsedMesh(NamedTuple):
         return 0.5 * float(np.linalg.norm(np.subtract(self.high, self.low)))
 
 
-def used_mesh(path: str, longest_mm: float | None, material: str = "") -> UsedMesh:
+def used_mesh(path: str, longest_mm: float | None, material: str = "", pose: Pose = _AS_IT_IS) -> UsedMesh:
     """Reads a mesh whose longest side is `longest_mm` millimetres, or which is in metres where that is None.
 
-    Of a glTF file, the triangles with one material alone, if it is named. Raises SssgenError for a faulty file.
+    It is turned to `pose`, with the other parts of the file. Of a glTF file, the triangles with one material alone, if
+    it is named. Raises SssgenError for a faulty file.
     """
     report, part = Report(os.path.basename(path)), None
     if is_gltf(path) and os.path.isfile(path):
         part = read_part(path, material, report)
+        if part.rest and pose != _AS_IT_IS:
+            part = part._replace(rest=turned(part.rest, pose.matrix))
         geometry = Mesh(path=f"{os.path.splitext(path)[0]}.glb", data=mesh_file(part.mesh))
     elif material:
         raise failure("a material is chosen of a glTF file", "leave --material out", posix(path))
@@ -72,6 +96,9 @@ def used_mesh(path: str, longest_mm: float | None, material: str = "") -> UsedMe
     longest = float((high - low).max())
     has_relief = part is not None and part.imported is not None and part.imported.model.normal.image is not None
     content, tangents = _content(geometry, has_relief)
+    if pose != _AS_IT_IS:
+        content, tangents = _posed(content, tangents, pose.matrix.T)
+        low, high = content.vertices.min(axis=0), content.vertices.max(axis=0)
     size = BodySize(1000.0 if longest_mm is None else longest_mm / longest, mean_chord(content))
     return UsedMesh(path, content, tangents, size, _corner(low), _corner(high), geometry, part, report)
 
@@ -92,6 +119,13 @@ def _content(geometry: Mesh, has_relief: bool) -> tuple[FileContent, Array | Non
     uv = None if mesh.uv is None else vertices[:, 6:8]
     tangents = vertices[:, 8:12] if vertices.shape[1] == 12 else None
     return FileContent(vertices[:, :3], faces, uv, normals=vertices[:, 3:6]), tangents
+
+
+def _posed(mesh: FileContent, tangents: Array | None, matrix: Array) -> tuple[FileContent, Array | None]:
+    """The triangles and tangents behind a rotation of rows."""
+    assert mesh.normals is not None
+    posed = mesh._replace(vertices=mesh.vertices @ matrix, normals=mesh.normals @ matrix)
+    return posed, None if tangents is None else np.c_[tangents[:, :3] @ matrix, tangents[:, 3]]
 
 
 def _tangents(along: Array, normals: Array) -> Array:

@@ -10,9 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.ir.spans import Span
 from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.obj_lines import faulty_line, is_doubtful
 from sssgen.scene.pictures.images import decode_srgb
-from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
@@ -76,7 +78,7 @@ def parse(data: bytes, name: str) -> FileContent:
 
 def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = "") -> FileContent:
     """The triangles of a file; those that it refers to are read next to `beside`, and not at all without it."""
-    trimesh = need("trimesh")
+    trimesh, data = need("trimesh"), b""
     try:
         data = content()
         if kind in (".glb", ".gltf"):
@@ -84,19 +86,32 @@ def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = ""
             # texture coordinates are loaded with the materials
             return _join(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
         loaded = trimesh.load_mesh(io.BytesIO(data), file_type=kind[1:], process=False, skip_materials=True)
-        color = _colors(loaded)
+        uv, color = getattr(loaded.visual, "uv", None), _colors(loaded)
+        if kind == ".obj" and is_doubtful(data, uv is not None):
+            _refuse_faulty_line(data, shown)
         if color is not None:  # of a file format without a colour space: as its editors show them
             color[:, :3] = decode_srgb(color[:, :3])
-        return _read(loaded.vertices, loaded.faces, getattr(loaded.visual, "uv", None), None, color)
+        return _read(loaded.vertices, loaded.faces, uv, None, color)
     except SssgenError:
         raise
     except FileNotFoundError as error:
         hint = "copy it to the same folder"
         raise failure(f"there is no file '{error.filename or error}' beside this one", hint, shown) from None
     except Exception as error:  # its readers raise exceptions of any type for a faulty file
+        if kind == ".obj":
+            _refuse_faulty_line(data, shown)
         # for bytes that are not text it tries to import a package that guesses encodings
-        hint = "" if isinstance(error, ImportError) else f"the reader reports: {type(error).__name__}: {error}"
+        report = "" if isinstance(error, ImportError) or kind == ".obj" else f"; its reader reports: {error}"
+        hint = f"it may be cut off, or another kind of file: export it again{report}"
         raise failure(f"the mesh cannot be read: it is not a valid {kind} file", hint, shown) from None
+
+
+def _refuse_faulty_line(data: bytes, shown: str) -> None:
+    """Raises SssgenError for the first wrong line of an .obj file."""
+    if (fault := faulty_line(data)) is not None:
+        number, text, message = fault
+        span = Span(shown, number, 1, number, len(text) + 1)
+        raise SssgenError([Diagnostic("error", message, span, "correct the line, or export the mesh again", text)])
 
 
 def _read(vertices: Any, faces: Any, uv: Any, uv2: Any = None, color: Any = None) -> FileContent:

@@ -36,8 +36,8 @@ class ProgressBar:
     """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream.
 
     On a terminal with rich it is a bar that is erased at the end, with the time left; in a pipe or a log, a line every
-    10 seconds, also while one item takes longer. With `one_line` a pipe gets one line alone: as soon as the time left
-    can be estimated, where the whole work takes more than 5 seconds.
+    10 seconds, also while one item takes longer. With `one_line` a pipe gets one line alone for each total: as soon as
+    the time left can be estimated, where the whole work takes more than 5 seconds.
     """
 
     def __init__(self, one_line: bool = False) -> None:
@@ -71,7 +71,9 @@ class ProgressBar:
         with self.lock:
             self.state = done, total, name
             if self.first is None or self.first[2] != total or done < self.first[1]:
-                self.first = time.monotonic(), done, total
+                now = time.monotonic()
+                self.first, self.printed = (now, done, total), False
+                self.shown = now if self.one_line else self.shown
             self._show()
 
     @contextlib.contextmanager

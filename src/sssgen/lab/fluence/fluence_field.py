@@ -178,20 +178,29 @@ class _Work(NamedTuple):
     processes: int | None
     progress: Progress
 
+    @property
+    def refracts(self) -> bool:
+        """Whether the surface bends light."""
+        return self.scene.medium is not None and self.scene.medium.ior != 1.0
+
+    @property
+    def by_photons_alone(self) -> bool:
+        """Whether photons have the light that has not been scattered, too."""
+        return not by_flights(self.scene) and (self.refracts or self.settings.fixed)
+
     def shares(self, directions: Array) -> npt.NDArray[np.float32]:
         """The shares of light that has not been scattered, (3, directions, voxels); (3, 0, voxels) where photons have
         it: behind a refracting surface and for a fixed light, if the medium is anisotropic."""
         scene, settings = self.scene, self.settings
-        refracts = scene.medium is not None and scene.medium.ior != 1.0
-        if not by_flights(scene) and (refracts or settings.fixed):
+        if self.by_photons_alone:
             return np.zeros((3, 0, int(projection_of(scene, settings.voxels).counting.sum())), np.float32)
         function = "trace_shares"
         traced: tuple[int, ...] = ()
-        if refracts:
+        if self.refracts:
             photons = settings.photons * (OF_FIXED if settings.fixed else 1)
             function, traced = "trace_arriving", (max(photons // PHOTONS_OF_RAY, 1), settings.seed)
         groups = _groups(directions)
-        parts = self._results(function, [(scene, group, settings.voxels, *traced) for group in groups])
+        parts = self._results("step 1 of 2, ", function, [(scene, group, settings.voxels, *traced) for group in groups])
         return np.concatenate(parts, axis=1)
 
     def field(self, directions: Array, shares: npt.NDArray[np.float32]) -> Field:
@@ -200,17 +209,18 @@ class _Work(NamedTuple):
         grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
         channels = range(3)
         each: list[tuple[Any, ...]]
+        step = "" if self.by_photons_alone else "step 2 of 2, "
         if by_flights(scene):
             flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
             each = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
-            results = self._results("trace_flights", each)
+            results = self._results(step, "trace_flights", each)
             values = np.stack([texels for texels, _ in results]).astype(np.float64)
         else:
             photons = settings.photons * OF_FIXED if settings.fixed else max(settings.photons // OF_NEIGHBOURS, 2)
             rest = (settings.voxels, photons, settings.seed, settings.fixed)
             groups = _groups(directions)
             each = [(scene, channel, group, *rest) for channel in channels for group in groups]
-            results = self._results("trace_photons", each)
+            results = self._results(step, "trace_photons", each)
             estimates = np.concatenate([part for part, _ in results]).astype(np.float64)
             values = projection.texels(projection.folded(estimates)).reshape(3, len(directions), -1)
         noise = float(np.sqrt(np.mean([error**2 for _, error in results]))) / max(float(values.mean()), 1e-30)
@@ -223,8 +233,8 @@ class _Work(NamedTuple):
             grid, values, shares, cells, projection.nearest, directions, noise, smooth, distance
         )  # fmt: skip
 
-    def _results(self, function: str, each: list[tuple[Any, ...]]) -> list[Any]:
-        label = f"fluence of {self.scene.name}"
+    def _results(self, step: str, function: str, each: list[tuple[Any, ...]]) -> list[Any]:
+        label = f"{step}fluence of {self.scene.name}"
         items = [Item(f"sssgen.lab.fluence.fluence_field:{function}", arguments, label) for arguments in each]
         results = run(items, self.scheduler, self.processes, progress=self.progress)
         for result in results:
