@@ -38,7 +38,8 @@ What the engine lacks beside the path traced picture: bodies take no light from 
 each other, what a body sends to the ground is a lamp inside it without a shadow, light is not focused on the ground,
 and reflections show the surroundings alone. The path tracer's samples are few, and its picture is denoised (Open
 Image Denoise). The error is FLIP between both developed pictures, 0 where they are the same. Skin and marble are not
-path traced: light is scattered there too often for the samples, and the occlusion is a part of their colours.
+path traced: light is scattered there too often for the samples, and the occlusion is a part of their colours. Neither
+is ice, whose cracks, bubbles and frost are in its shader alone.
 
 Models are our own, procedural, in `docs/heroes/NAME/model.py`. The head of the skin and of the marble is that of
 [MakeHuman](https://static.makehumancommunity.org/) (base mesh and targets, and Mika Suominen's Face Units: CC0-1.0),

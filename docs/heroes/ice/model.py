@@ -1,17 +1,18 @@
-"""Three ice cubes, 0.85 units wide, that begin to melt on slate; bubbles inside are a mesh of their own."""
+"""Three ice cubes, 0.85 units wide, with frosted edges, that begin to melt on a bar; far lights behind it."""
 
 from __future__ import annotations
+
+import dataclasses
 
 import numpy as np
 from hero_stage.mesh import Mesh
 from hero_stage.shapes import Array, box, ellipsoid, joined, meshed, noise, sheet, smooth_step
-from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 CUBES = (
-    ((-0.5, 0.4, 0.1), (0, 24, 0), 0.42),
-    ((0.52, 0.4, -0.1), (0, -18, 2), 0.42),
-    ((0.02, 1.16, 0.0), (8, 40, 14), 0.39),
+    ((-0.5, 0.4, 0.1), (0, 27, 0), 0.42),
+    ((0.5, 0.4, -0.1), (0, -21, 2), 0.42),
+    ((0.0, 1.15, 0.0), (7, 38, 12), 0.39),
 )
 """The middle, the angles in degrees about x, y and z, and half the width of each."""
 
@@ -25,42 +26,66 @@ def cubes(p: Array) -> Array:
     bodies = []
     for number, (_, _, half) in enumerate(CUBES):
         q = local(p, number)
-        melted = q * (1.0 + 0.05 * (q**2).sum(axis=-1, keepdims=True) / 3.0)
-        dent = 0.16 * np.exp(-((q[:, 0] - 0.1) ** 2 + q[:, 2] ** 2) / 0.25) * (q[:, 1] > 0)
-        bodies.append(half * (box(melted, (0, 0, 0), (1, 1, 1), 0.42) + dent) * 0.9)
+        melted = q * (1.0 + 0.04 * (q**2).sum(axis=-1, keepdims=True) / 3.0)
+        dent = 0.12 * np.exp(-((q[:, 0] - 0.1) ** 2 + q[:, 2] ** 2) / 0.3) * (q[:, 1] > 0)
+        bodies.append(half * (box(melted, (0, 0, 0), (1, 1, 1), 0.26) + dent) * 0.9)
     body = joined(bodies[0], *bodies[1:], blend=0.03)
     pool = joined(
-        ellipsoid(p, (-0.3, 0.0, 0.35), (0.95, 0.06, 0.5)),
-        ellipsoid(p, (0.55, 0.0, 0.1), (0.8, 0.06, 0.55)),
+        ellipsoid(p, (-0.3, 0.0, 0.35), (0.95, 0.05, 0.5)),
+        ellipsoid(p, (0.55, 0.0, 0.1), (0.8, 0.05, 0.55)),
+        ellipsoid(p, (1.32, 0.0, 0.55), (0.1, 0.05, 0.07)),
+        ellipsoid(p, (-1.25, 0.0, -0.1), (0.07, 0.04, 0.06)),
         blend=0.03,
     )
-    body = np.maximum(joined(body, pool, blend=0.06), 0.004 - p[:, 1])
-    return (
-        body + 0.022 * smooth_step(0.03, 0.2, p[:, 1]) * noise(p, 2.4, 2, seed=3) + 0.0015 * noise(p, 12.0, 2, seed=9)
-    )
+    body = np.maximum(joined(body, pool, blend=0.05), 0.004 - p[:, 1])
+    return body + 0.018 * smooth_step(0.03, 0.2, p[:, 1]) * noise(p, 1.7, 2, seed=3)
 
 
-def bubbles(p: Array) -> Array:
-    """A cloud in the middle of each cube, and rows of bubbles that run outwards from it."""
-    random, centers, radii = np.random.default_rng(8), [], []
-    for middle, angles, half in CUBES:
-        turn = Rotation.from_euler("xyz", angles, degrees=True).as_matrix()
-        ways = random.normal(size=(260, 3)) * [0.1, 0.34, 0.12]
-        rows = random.normal(size=(22, 1, 3))
-        rows /= np.linalg.norm(rows, axis=-1, keepdims=True)
-        rows = (rows * np.linspace(0.3, 0.72, 9)[None, :, None]).reshape(-1, 3)
-        inside = np.concatenate([ways, rows])
-        centers.append(np.array(middle) + half * inside @ turn.T)
-        radii.append(np.concatenate([random.uniform(0.002, 0.008, 260), random.uniform(0.002, 0.005, len(rows))]))
-    away, nearest = cKDTree(np.concatenate(centers)).query(p)
-    return away - np.concatenate(radii)[nearest]
+def frost(p: Array) -> Array:
+    """How much of the surface is rough and white: the edges of the cubes, in patches."""
+    shares = []
+    for number in range(len(CUBES)):
+        turned = local(p, number)
+        q = np.abs(turned)
+        edge = (
+            smooth_step(-1.3, 0.9, turned[:, 1])
+            * smooth_step(0.6, 0.9, np.sort(q, axis=-1)[:, 1])
+            * (q.max(axis=-1) < 1.2)
+        )
+        shares.append(edge * smooth_step(-0.5, 0.35, noise(p, 3.0, 4, seed=21, gain=0.75)))
+    return np.max(shares, axis=0) * smooth_step(0.05, 0.16, p[:, 1])
+
+
+def wall() -> Mesh:
+    """The lights of a bar at night, far out of focus: discs on a dark wall, in the colours of its vertices."""
+    across, up = np.meshgrid(np.linspace(-8.0, 8.0, 480), np.linspace(-3.0, 5.0, 240))
+    light = np.array([0.012, 0.03, 0.05]) * np.exp(-(((up - 1.0) / 2.2) ** 2))[..., None]
+    random = np.random.default_rng(5)
+    hues = np.array([[1.0, 0.45, 0.1], [1.0, 0.62, 0.25], [1.0, 0.3, 0.07], [0.12, 0.55, 0.7], [0.75, 0.85, 1.0]])
+    for _ in range(85):
+        x, y = random.uniform(-7.5, 7.5), 0.6 + random.normal() * 1.1
+        away = np.hypot(across - x, up - y) / random.uniform(0.14, 0.42)
+        disc = smooth_step(1.0, 0.86, away) * (0.72 + 0.28 * smooth_step(0.6, 0.95, away))
+        hue = hues[random.choice(len(hues), p=[0.32, 0.26, 0.14, 0.18, 0.1])]
+        light = light + disc[..., None] * hue * random.uniform(0.06, 0.5)
+    light = light + random.uniform(-0.5, 0.5, across.shape)[..., None] / 255.0  # hides the steps of 8 bits
+    number = np.arange(across.size).reshape(across.shape)
+    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    vertices = np.stack([across, up, np.full_like(up, -9.0)], axis=-1).reshape(-1, 3)
+    colors = np.column_stack([np.clip(light, 0.0, 1.0).reshape(-1, 3), np.ones(across.size)])
+    return Mesh(vertices, faces, np.tile([0.0, 0.0, 1.0], (across.size, 1)), colors=colors)
 
 
 def meshes(cells: int) -> dict[str, Mesh]:
+    ice = meshed(cubes, (-1.5, -0.05, -0.8), (1.5, 1.8, 1.0), cells).with_colors()
+    white = frost(ice.vertices)
+    stained = np.column_stack([np.repeat(white[:, None], 3, axis=1), ice.colors[:, 3]])
     return {
-        "ice": meshed(cubes, (-1.4, -0.05, -0.8), (1.5, 1.85, 1.0), cells).with_colors(),
-        "bubbles": meshed(bubbles, (-0.9, 0.02, -0.5), (0.95, 1.6, 0.5), 300),
-        "table": sheet(24.0),
+        "ice": dataclasses.replace(ice, colors=stained),
+        "wall": wall(),
+        "panel": sheet(1.0),
+        "table": sheet(6.4),
     }
 
 
