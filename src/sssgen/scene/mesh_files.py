@@ -47,7 +47,7 @@ def check_suffix(path: str) -> None:
     """Raises SssgenError for a path without the suffix of a mesh file."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
-        hint = did_you_mean(suffix, SUFFIXES) or f"meshes end in {', '.join(SUFFIXES)}"
+        hint = did_you_mean(suffix, SUFFIXES) or f"export the mesh as one that ends in {', '.join(SUFFIXES)}"
         raise failure(f"'{suffix}' is not a mesh file's suffix", hint, posix(path))
 
 
