@@ -57,6 +57,15 @@ def test_a_mesh_far_from_the_origin_is_coarse(place: float, is_far: bool, tmp_pa
     assert any("away from the origin" in text for text in mesh_warnings(Mesh(path=box.path), MeshNeeds())) == is_far
 
 
+def test_a_body_on_its_copy_is_one_body(tmp_path: Path) -> None:
+    single, double = mesh(tmp_path / "single.obj", 1.0), mesh(tmp_path / "double.obj", 1.0, 1.0)
+    assert double.triangles.repeated == len(FACES) and len(double.triangles.corners) == len(single.triangles.corners)
+    (warning,) = mesh_warnings(double, INSIDE)
+    assert "12 triangles are there twice: they are left out here" in warning
+    sheet = mesh(tmp_path / "sheet.obj", 1.0, faces=np.array([[0, 1, 3], [0, 3, 1]]))
+    assert sheet.triangles.repeated == 0, "both sides of a sheet stay"
+
+
 def test_parts_beside_each_other_suit(tmp_path: Path) -> None:
     both = mesh(tmp_path / "both.obj", 1.0, 0.5)
     text = Path(both.path).read_text(encoding="utf-8").splitlines()

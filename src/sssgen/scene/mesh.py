@@ -14,7 +14,7 @@ from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.mesh_distance import MeshDistance, is_inside_out, rim_length
 from sssgen.scene.mesh_rays import MeshRays
-from sssgen.scene.mesh_repair import flipped, welded
+from sssgen.scene.mesh_repair import flipped, repeated, welded
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -51,6 +51,8 @@ class Triangles(NamedTuple):
     """(f, 3, 3): those of the file, unit; 0 where it has none; or None"""
     turned: int = 0
     """How many triangles were turned, so that neighbours face the same way"""
+    repeated: int = 0
+    """How many triangles were left out, as they are equal to others"""
 
     def corner_normals(self, face: npt.NDArray[Any]) -> Array:
         """The normals at the corners of triangles, (n, 3, 3): those of the file, or else smooth ones."""
@@ -177,6 +179,9 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     if not area.any():
         raise failure("no triangle has an area", "", shown)
     valid = area > 0.0
+    copies = valid.copy()
+    copies[valid] = repeated(corners[valid])
+    valid &= ~copies
     faces, corners, across = faces[valid], corners[valid], across[valid]
     if (turned := flipped(corners, area[valid])).any():
         faces, corners = (np.where(turned[:, None], rows[:, ::-1], rows) for rows in (faces, corners))
@@ -187,7 +192,7 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     uv2, color, own_normals = (None if values is None else values[faces] for values in (uv2, color, own))
     mesh = Triangles(
         places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), uv2, color, own_normals,
-        int(turned.sum()),
+        int(turned.sum()), int(copies.sum()),
     )  # fmt: skip
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
 

@@ -73,6 +73,9 @@ def _mended(mesh: Mesh, needs: MeshNeeds) -> list[str]:
     place = f"here and in {needs.written}" if needs.written else "here; do so in the file for engines"
     turned = mesh.triangles.turned
     messages = [f"{turned_text(turned)}: turned {place}"] if turned else []
+    if copies := mesh.triangles.repeated:
+        times = "1 triangle is there twice: it is" if copies == 1 else f"{copies} triangles are there twice: they are"
+        messages.append(f"{times} left out {place}")
     if mesh.inside_out and (needs.inside or mesh.closed):  # of a sheet there is no inside
         messages.append(f"the mesh is inside out: all its triangles are turned {place}")
     return messages
