@@ -256,7 +256,7 @@ def test_the_size_that_is_assumed_is_printed(block: str, capsys: pytest.CaptureF
         (["wax"], "Quality: good, the body is drawn", True),
         (["wax", "--target", "gltf"], "Quality: that of the viewer", False),
         (["leaf"], "Quality: the same for all", False),
-        (["honey", "--quality", "best"], "Quality: best, the body is drawn", False),
+        (["honey", "--quality", "best"], "honey has no light inside to bake, so that best is the same as good", False),
     ],
 )
 def test_the_readme_says_what_the_quality_is(words: list[str], text: str, offers_best: bool, block: str) -> None:
@@ -264,6 +264,43 @@ def test_the_readme_says_what_the_quality_is(words: list[str], text: str, offers
     assert main(["use", preset, block, "-o", "out", *options]) == 0
     readme = Path("out", "README.md").read_text(encoding="utf-8")
     assert text in readme and ("the same command with `--quality best`" in readme) == offers_best
+
+
+def test_best_without_a_bake_is_said_once(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for words, is_said in (
+        (["ice", "--quality", "best"], True),
+        (["leaf", "--quality", "best"], True),
+        (["ice"], False),
+    ):
+        preset, *options = words
+        assert main(["use", preset, block, "-o", "out", *options]) == 0
+        said = f"warning: {preset} has no light inside to bake, so that best is the same as good\n"
+        assert capsys.readouterr().out.count(said) == is_said
+
+
+def test_the_side_in_front_is_said_where_nobody_says_it(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("block.glb").write_bytes(used_mesh(block, 40.0).glb)
+    line = "front: the view shows the side towards +z; --turn 180 shows the other one\n"
+    for words in ([block], [block, "--turn", "0"], [block, "--up", "y"], ["block.glb"]):
+        assert main(["use", "wax", *words, "-o", "out"]) == 0
+        assert (line in capsys.readouterr().out) == (words == [block])
+
+
+def test_sheets_on_bodies_and_bodies_of_no_thickness_are_doubtful(
+    block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import trimesh
+
+    for height in (0.001, 0.02):
+        trimesh.creation.box((2, 2, height)).export(f"{height}.stl")
+    for preset, mesh, text in (
+        ("paper", block, "a thick closed body"), ("leaf", "0.02.stl", ""), ("jade", block, ""),
+        ("ice", "0.001.stl", "may have rings"), ("ice", "0.02.stl", ""), ("leaf", "0.001.stl", ""),
+        ("wax", "0.001.stl", "mean free paths thick"),
+    ):  # fmt: skip
+        assert main(["use", preset, mesh, "-o", "out"]) == 0
+        warnings = [line for line in capsys.readouterr().out.splitlines() if line.startswith("warning")]
+        assert len(warnings) == bool(text) and text in "".join(warnings), (preset, mesh)
 
 
 def test_options_without_an_effect_and_sizes_that_are_dark(block: str, capsys: pytest.CaptureFixture[str]) -> None:

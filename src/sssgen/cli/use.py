@@ -52,11 +52,11 @@ def add_options(parser: ArgumentParser) -> None:
         "unit of the mesh is a metre, as in glTF",
     )  # fmt: skip
     add(
-        "--turn", type=float, default=0.0, metavar="DEGREES",
+        "--turn", type=float, metavar="DEGREES",
         help="turn the body about its vertical axis: 180 where the page shows its back (default: the view looks at its "
         "+z side, the front in glTF)",
     )  # fmt: skip
-    add("--up", choices=("y", "z"), default="y", help="the axis of the file that points up (default: y); z: as in CAD")
+    add("--up", choices=("y", "z"), help="the axis of the file that points up (default: y); z: as in CAD")
     add(
         "--material",
         metavar="NAME",
@@ -87,12 +87,13 @@ def run(arguments: Namespace) -> int:
     if target == "gltf" and arguments.quality != "good":
         raise failure("a glTF file has neither lobes nor baked light", "leave --quality out")
     size = _size(arguments.size, chosen.size_mm)
-    if not math.isfinite(arguments.turn):
-        raise failure(f"a body cannot be turned by {arguments.turn:g} degrees", "--turn 180 shows the other side")
+    turn = arguments.turn or 0.0
+    if not math.isfinite(turn):
+        raise failure(f"a body cannot be turned by {turn:g} degrees", "--turn 180 shows the other side")
     check_folder(folder)
     with ProgressBar() as bar:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
-        mesh = used_mesh(arguments.MESH, size, arguments.material, Pose(arguments.up == "z", arguments.turn))
+        mesh = used_mesh(arguments.MESH, size, arguments.material, Pose(arguments.up == "z", turn))
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         warnings = _warnings(request, bool(arguments.keep_color))
@@ -108,6 +109,7 @@ def run(arguments: Namespace) -> int:
         *_kept_lines(mesh.report),
         *(f"warning: {warning}" for warning in warnings),
         _size_line(request, arguments.size),
+        *_front_lines(arguments),
         *_next_lines(request, folder),
     ]
     report = {
@@ -168,6 +170,8 @@ def _warnings(request: Request, keeps_color: bool) -> list[str]:
 
     mesh = request.mesh
     warnings, part = mesh_warnings(mesh.geometry, request.needs), mesh.part
+    if request.same_as_good:
+        warnings.append(request.same_as_good)
     if part is not None and part.imported is None:
         names = ", ".join(part.others)
         warnings.append(
@@ -205,6 +209,15 @@ def _size_line(request: Request, given: str | None) -> str:
     return f"size: {longest}; {unit}"
 
 
+def _front_lines(arguments: Namespace) -> list[str]:
+    """Which side the view shows, where neither the file nor the user says which one is in front."""
+    from sssgen.presets.kept_material import is_gltf
+
+    if is_gltf(arguments.MESH) or arguments.turn is not None or arguments.up is not None:
+        return []
+    return ["front: the view shows the side towards +z; --turn 180 shows the other one"]
+
+
 def _next_lines(request: Request, folder: str) -> list[str]:
     """How the project is opened and changed."""
     from sssgen.support.extra_packages import is_installed
@@ -224,7 +237,7 @@ def _command(arguments: Namespace) -> str:
     words += ["--quality", arguments.quality]
     words += ["--size", arguments.size] if arguments.size else []
     words += ["--turn", f"{arguments.turn:g}"] if arguments.turn else []
-    words += ["--up", arguments.up] if arguments.up != "y" else []
+    words += ["--up", arguments.up] if arguments.up == "z" else []
     words += ["--material", arguments.material] if arguments.material else []
     if arguments.keep_color is not None:
         words.append("--keep-color" if arguments.keep_color else "--no-keep-color")

@@ -68,7 +68,8 @@ class Request(NamedTuple):
         inside = self.quality != "fast" and not any(self.preset.sheet)
         scattered = inside and self.preset.scatters and not self.baked
         path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if scattered else 1.0
-        return MeshNeeds(inside, (), self.mesh.size.mean_chord / path if scattered else None, MESH)
+        paths = self.mesh.size.mean_chord / path if scattered else None
+        return MeshNeeds(inside, (), paths, MESH, any(self.preset.sheet), self.mesh.thickness)
 
     @property
     def clear_share(self) -> float:
@@ -84,14 +85,22 @@ class Request(NamedTuple):
         return self.keeps_color and not self.baked
 
     @property
+    def same_as_good(self) -> str:
+        """That the quality is best and nothing is baked, as text; else ''."""
+        if self.quality != "best" or self.baked:
+            return ""
+        return f"{self.preset.name} has no light inside to bake, so that best is the same as good"
+
+    @property
     def quality_text(self) -> str:
         """The quality, and what it is."""
         if self.target == "gltf":
             return "that of the viewer, which draws Khronos' extensions; report.md says what they cannot"
         if any(self.preset.sheet):
             return "the same for all: a sheet needs no picture of the body, and no bake"
-        drawn = "good" if self.quality == "best" and not self.baked else self.quality
-        return f"{self.quality}, {QUALITIES[drawn]}"
+        if self.same_as_good:
+            return f"good, {QUALITIES['good']}; {self.same_as_good}"
+        return f"{self.quality}, {QUALITIES[self.quality]}"
 
     @property
     def can_be_baked(self) -> bool:

@@ -68,7 +68,16 @@ class UsedMesh(NamedTuple):
     @property
     def longest_mm(self) -> float:
         """The longest side of the box in millimetres."""
-        return self.size.unit_mm * max(high - low for low, high in zip(self.low, self.high, strict=True))
+        return self.size.unit_mm * self._longest
+
+    @property
+    def thickness(self) -> float:
+        """The mean chord over the longest side of the box."""
+        return self.size.mean_chord / self._longest
+
+    @property
+    def _longest(self) -> float:
+        return max(high - low for low, high in zip(self.low, self.high, strict=True))
 
     @property
     def radius(self) -> float:

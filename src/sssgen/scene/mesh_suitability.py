@@ -28,6 +28,9 @@ FEW_PATHS = 1.0
 """The mean chord in mean free paths below which light passes a body almost without scattering."""
 MANY_PATHS = 300.0
 """The same above which a body looks opaque; presets have 4 to 58 in the sizes that they assume."""
+THIN, THICK = 2e-3, 0.1
+"""The mean chord over the mesh's longest side below which pictures of the body do not resolve its thickness (a pane of
+ice has rings at .001, and none at .003), and from which a closed mesh is no leaf: figures have .2 to .7."""
 FAR_AWAY = 1e3
 """The distance from the origin, relative to the mesh's longest side, at which float32 has four digits of its shape"""
 BELOW = 1e-4
@@ -48,6 +51,10 @@ class MeshNeeds(NamedTuple):
     None where it is traced, or where nothing scatters"""
     written: str = ""
     """The file that the mesh is written to as it is here, where engines do not get the user's own"""
+    sheet: bool = False
+    """Whether the material is a surface that is lit from both sides, with nothing inside"""
+    thickness: float | None = None
+    """The mean chord over the mesh's longest side, where it is compared with what the material needs"""
 
 
 def mesh_warnings(mesh: Mesh, needs: MeshNeeds) -> list[str]:
@@ -62,6 +69,7 @@ def mesh_warnings(mesh: Mesh, needs: MeshNeeds) -> list[str]:
         if mixed_sides(corners):
             messages.append(MIXED)
         messages += _parts(mesh, shells)
+    messages += _thickness_warnings(mesh, needs)
     if needs.textures and mesh.triangles.uv is None:
         reading = ", ".join(needs.textures)
         messages.append(f"the mesh has no texture coordinates, and {reading} reads a texture: unwrap the mesh")
@@ -90,6 +98,23 @@ def _far_away(places: Array) -> list[str]:
         f"the mesh is {away:.3g} times its size away from the origin, where the numbers of engines are coarse: move it "
         "to the origin"
     ]
+
+
+def _thickness_warnings(mesh: Mesh, needs: MeshNeeds) -> list[str]:
+    """The warning for a sheet's material on a body, or for a body's material on a sheet that `size_warnings` accept."""
+    if needs.thickness is None:
+        return []
+    if needs.sheet and needs.thickness >= THICK and mesh.closed:
+        return [
+            "the preset is a sheet, lit from both sides of each point, and the mesh is a thick closed body: a lamp "
+            "behind it does not shine through; choose a preset for a body, such as wax or soap"
+        ]
+    if needs.inside and needs.thickness < THIN and (needs.paths is None or needs.paths >= FEW_PATHS):
+        return [
+            f"the body is {needs.thickness:.1g} of its longest side thick, which its pictures do not resolve: it may "
+            f"have rings; make it thicker, or for a sheet {_SHEETS}"
+        ]
+    return []
 
 
 def _holes(corners: npt.NDArray[np.int64]) -> list[str]:
