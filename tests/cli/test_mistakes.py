@@ -115,6 +115,11 @@ def test_a_material_that_a_file_lacks(
     assert f"help: {hint}" in capsys.readouterr().err
 
 
+def test_functions_are_never_standalone(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["emit", "ice", "--form", "functions", "--standalone", "-t", "threejs", "-o", "out"]) == 2
+    assert "--standalone is for whole modules" in capsys.readouterr().err and not Path("out").exists()
+
+
 @pytest.mark.parametrize("command", ["render {}", "emit {} -t wgsl -o out", "preview {}", "pick {} --max-error 1"])
 @pytest.mark.parametrize(
     ("name", "message", "hint"),

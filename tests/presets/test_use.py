@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.presets.engines import ENGINES
 from sssgen.presets.used_mesh import Pose, used_mesh
-from sssgen.presets.written_project import RECORD
+from sssgen.presets.written_project import RECORD, WrittenProject
 from sssgen.scene.mesh_files import read
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[import]'")
@@ -87,6 +88,18 @@ def test_another_project_replaces_one_that_nobody_edited(block: str, capsys: pyt
     assert Path("out", "mine.txt").exists()
 
 
+def test_folders_that_become_empty_are_removed(tmp_path: Path) -> None:
+    digests = {}
+    for name in ("library/three/addons/loader.js", "library/three/three.js", "textures/a.png"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name, encoding="utf-8")
+        digests[name] = hashlib.sha256(name.encode()).hexdigest()
+    (tmp_path / "textures" / "mine.png").touch()
+    assert len(WrittenProject("wax", digests).remove_others(str(tmp_path), ())) == 3
+    assert [path.name for path in tmp_path.iterdir()] == ["textures"]
+
+
 @pytest.mark.parametrize("edited", ["wax.toml", "main.js"])
 def test_another_project_replaces_no_edits(edited: str, block: str, capsys: pytest.CaptureFixture[str]) -> None:
     """Neither where the new project has a file of the name, nor where it has none."""
@@ -101,6 +114,26 @@ def test_another_project_replaces_no_edits(edited: str, block: str, capsys: pyte
     assert {path: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()} == before
     assert main(["use", "jade", block, "-o", "out", "--force"]) == 0
     assert Path("out", "wax.toml").exists() == (edited == "wax.toml") and not Path("out", "wax.js").exists()
+
+
+def test_emit_replaces_no_edits_of_a_project(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """But what it wrote there itself, after each change of the material."""
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    material, shader = Path("out", "wax.toml"), Path("out", "wax.js")
+    emit = ["emit", str(material), "--target", "threejs", "-o"]
+    for roughness in ("0.5", "0.6"):
+        text = re.sub("surface_roughness = .*", f"surface_roughness = {roughness}", material.read_text("utf-8"))
+        material.write_text(text, encoding="utf-8")
+        before = shader.read_bytes()
+        assert main([*emit, "out"]) == 0 and shader.read_bytes() != before
+    emitted = shader.read_text("utf-8")
+    shader.write_text(emitted + "// mine\n", encoding="utf-8")
+    capsys.readouterr()
+    assert main([*emit, "out"]) == 2 and shader.read_text("utf-8").endswith("// mine\n")
+    error = capsys.readouterr().err
+    assert "the file was edited since sssgen wrote it" in error and "--> out/wax.js" in error and "--force" in error
+    assert main([*emit, "elsewhere"]) == 0 and main([*emit, "out", "--force"]) == 0
+    assert shader.read_text("utf-8") == emitted == Path("elsewhere", "wax.js").read_text("utf-8")
 
 
 @pytest.mark.parametrize("record", ["", "[]", '{"project": "wax", "files": {"../block.obj": ""}}'])

@@ -12,9 +12,10 @@ from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_output, add_targe
 from sssgen.cli.output import CHECK_FAILED, OK, print_errors, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
+from sssgen.presets.written_project import write_shaders
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
 from sssgen.support.file_memo import changed_files, noted_files
-from sssgen.support.file_writer import Written, write_files
+from sssgen.support.file_writer import Written
 from sssgen.support.paths import posix
 
 if TYPE_CHECKING:
@@ -74,6 +75,9 @@ def add_emission_options(parser: ArgumentParser) -> None:
         help="one file per module for three.js, Babylon.js and PlayCanvas, without the runtime that materials share",
     )
     parser.add_argument("--templates", metavar="DIR", help="a folder of templates that replace those of sssgen")
+    parser.add_argument(
+        "--force", action="store_true", help="replace files of a project of `sssgen use` that were edited"
+    )
 
 
 def run(arguments: Namespace) -> int:
@@ -94,7 +98,7 @@ def run(arguments: Namespace) -> int:
             trace.write(arguments.output)
     if emitted.errors and not emitted.files and len(arguments.MATERIAL) == 1:
         raise SssgenError(emitted.errors)
-    written = [] if printed else write_files(arguments.output, emitted.files)
+    written = [] if printed else write_shaders(arguments.output, emitted.files, arguments.force)
     if arguments.json:
         rows = _printed_rows(emitted) if printed else written_rows(emitted, written)
         print_json({"ok": not emitted.errors, "form": arguments.form, **report(rows, emitted)})
@@ -186,6 +190,8 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     errors: list[Diagnostic] = []
     failed: set[str] = set()
     names = chosen_targets(arguments.target, wrong)
+    if arguments.standalone and arguments.form == "functions":
+        wrong += failure("--standalone is for whole modules", "leave it out, or --form functions").diagnostics
     every = "all" in arguments.target.split(",")
     templates = arguments.templates
     if templates is not None and not os.path.isdir(templates):

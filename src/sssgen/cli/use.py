@@ -97,7 +97,7 @@ def run(arguments: Namespace) -> int:
         keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
         request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         warnings = _warnings(request, bool(arguments.keep_color))
-        earlier = written_before(request, folder)
+        earlier = written_before(folder, request.folder)
         files = project_files(request, folder, earlier, arguments.force, bar)
         written = write_files(folder, files)
         removed = earlier.remove_others(folder, files)

@@ -1,6 +1,7 @@
 """The record of a project that `sssgen use` wrote: by it the next call knows which files of the folder nobody edited.
 
-Another preset, mesh or quality replaces those, and removes what it does not write itself.
+Another preset, mesh or quality replaces those, and removes what it does not write itself. `sssgen emit` into the folder
+replaces the shaders that nobody edited.
 """
 
 from __future__ import annotations
@@ -10,13 +11,15 @@ import hashlib
 import json
 import os
 from collections.abc import Collection, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from sssgen.presets.project_templates import Files
-from sssgen.presets.request import Request
 from sssgen.support.diagnostics import SssgenError, failure
-from sssgen.support.file_writer import as_bytes, check_names
+from sssgen.support.file_writer import Written, as_bytes, check_names, write_files
 from sssgen.support.paths import posix
+
+if TYPE_CHECKING:
+    from sssgen.presets.project_templates import Files
+    from sssgen.presets.request import Request
 
 RECORD = ".sssgen.json"
 """The name of the record. Engines do not import files that begin with a dot."""
@@ -52,14 +55,38 @@ class WrittenProject(NamedTuple):
                 with contextlib.suppress(OSError):
                     os.unlink(path)
                     removed.append(path)
-                    os.rmdir(os.path.dirname(path))  # an error unless it is empty
+                    part = name
+                    while part := os.path.dirname(part):
+                        os.rmdir(os.path.join(folder, part))  # an error unless it is empty
         return removed
 
+    def check_shaders(self, folder: str, texts: Mapping[str, str]) -> None:
+        """Raises SssgenError if one of the texts would replace a file that was edited since it was written."""
+        for name, text in texts.items():
+            now = _hash_of(folder, name)
+            if name in self.files and now not in ("", self.files[name], _hash(text)):
+                raise failure(
+                    "the file was edited since sssgen wrote it",
+                    "choose another folder with -o, or replace it with --force",
+                    posix(os.path.join(folder, name)),
+                )
 
-def written_before(request: Request, folder: str) -> WrittenProject:
-    """What an earlier call wrote to the folder."""
+    def with_shaders(self, texts: Mapping[str, str]) -> WrittenProject:
+        """The record after the texts were written: those of its files have other hashes."""
+        return self._replace(
+            files={name: _hash(texts[name]) if name in texts else old for name, old in self.files.items()}
+        )
+
+    @property
+    def text(self) -> str:
+        """The content of the record's file."""
+        return json.dumps({"project": self.title, "files": self.files}, indent=2, ensure_ascii=False) + "\n"
+
+
+def written_before(folder: str, part: str = "") -> WrittenProject:
+    """What an earlier call wrote to the folder, where its record is in the sub-folder `part`."""
     try:
-        with open(os.path.join(folder, request.folder, RECORD), encoding="utf-8") as file:
+        with open(os.path.join(folder, part, RECORD), encoding="utf-8") as file:
             content = json.load(file)
         files = {str(name): str(value) for name, value in content["files"].items()}
         check_names(files)
@@ -71,13 +98,24 @@ def written_before(request: Request, folder: str) -> WrittenProject:
 def record(request: Request, files: Files) -> Files:
     """The record of a project. What other presets share in the folder is not in it."""
     mesh = os.path.basename(request.mesh.path)
-    hashes = {
-        name: hashlib.sha256(as_bytes(content)).hexdigest()
-        for name, content in files.items()
-        if name.startswith(request.folder)
-    }
-    content = {"project": f"{request.name} on {mesh} for {request.target}", "files": hashes}
-    return {request.folder + RECORD: json.dumps(content, indent=2, ensure_ascii=False) + "\n"}
+    hashes = {name: _hash(content) for name, content in files.items() if name.startswith(request.folder)}
+    project = WrittenProject(f"{request.name} on {mesh} for {request.target}", hashes)
+    return {request.folder + RECORD: project.text}
+
+
+def write_shaders(folder: str, texts: Mapping[str, str], force: bool) -> list[Written]:
+    """Writes shaders to a folder. Raises SssgenError, without `force`, where one of a project there was edited."""
+    project = written_before(folder)
+    if not force:
+        project.check_shaders(folder, texts)
+    written = write_files(folder, texts)
+    if (after := project.with_shaders(texts)) != project:
+        write_files(folder, {RECORD: after.text})
+    return written
+
+
+def _hash(content: str | bytes) -> str:
+    return hashlib.sha256(as_bytes(content)).hexdigest()
 
 
 def _hash_of(folder: str, name: str) -> str:
