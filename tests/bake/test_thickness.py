@@ -26,6 +26,7 @@ from sssgen.bake.chord_lengths import Chords, inward
 from sssgen.bake.depth_map import depth_map
 from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
 from sssgen.jobs.executor import Failure, run
+from sssgen.scene.body_identity import has_measures
 from sssgen.scene.mesh import Mesh
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -200,7 +201,19 @@ def test_an_inverted_mesh_has_the_same_thickness() -> None:
     )
     assert wrong.facts["mesh"]["inside_out"] and not right.facts["mesh"]["inside_out"]
     assert wrong.facts["lost_rays"] < 0.01 and wrong.facts["mean"] == pytest.approx(right.facts["mean"], rel=0.02)
-    assert any("inside out" in one for one in warnings(wrong.facts))
+    (warning,) = warnings(wrong.facts)
+    assert (
+        warning == "the mesh is inside out: all its triangles are turned for the bake and in the mesh that is written"
+    )
+    Path("written.obj").write_text(wrong.mesh, encoding="utf-8")
+    written, given = Mesh(path="written.obj"), Mesh(path="turned.obj")
+    assert (
+        given.inside_out
+        and not written.inside_out
+        and has_measures(wrong.facts["mesh"], written.triangles.places, written.triangles.corners)
+    )
+    again = thickness_map("written.obj", (48, 48), Request(rays=64), processes=0)
+    assert again.values == pytest.approx(wrong.values, abs=1e-3) and warnings(again.facts) == []
 
 
 def test_a_hole_is_reported_and_its_rays_do_not_count() -> None:

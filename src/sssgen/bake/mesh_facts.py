@@ -29,9 +29,12 @@ def surface_facts(mesh: Mesh, new_uv: bool, shared: float) -> SurfaceFacts:
 
 def side_warnings(facts: MeshFacts) -> list[str]:
     """Warnings for the user about the sides of the triangles."""
+    place = "for the bake; do so in the file for engines"
+    if facts.get("new_uv"):
+        place = "for the bake and in the mesh that is written"
     messages = []
     if turned := facts["turned"]:
-        messages.append(f"{turned_text(turned)}: turned for the bake; do so in the file for engines")
+        messages.append(f"{turned_text(turned)}: turned {place}")
     if facts["inside_out"]:
-        messages.append("the mesh is inside out: its normals are reversed for the bake")
+        messages.append(f"the mesh is inside out: all its triangles are turned {place}")
     return messages + ([MIXED] if facts["mixed_sides"] else [])

@@ -11,7 +11,7 @@ from sssgen.bake.atlas import Indices
 from sssgen.bake.voxel_grid import Array
 from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.jobs.result_store import Store
-from sssgen.scene.mesh import Triangles
+from sssgen.scene.mesh import Mesh, Triangles
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 
@@ -60,11 +60,13 @@ def charts(places: npt.NDArray[np.float32], corners: Indices, parts: Indices) ->
     return result
 
 
-def obj(mesh: Triangles, uv: Array) -> str:
-    """The mesh as a Wavefront file with these texture coordinates."""
+def obj(body: Mesh, uv: Array) -> str:
+    """The mesh as a Wavefront file with these texture coordinates, its triangles as the bake takes them: outwards."""
+    mesh, order = body.triangles, -1 if body.inside_out else 1
     coordinates, index = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.places]
     lines += [f"vt {u:.9g} {v:.9g}" for u, v in coordinates]
     for face, uv_face in zip(mesh.corners + 1, index.reshape(-1, 3) + 1, strict=True):
-        lines.append("f " + " ".join(f"{vertex}/{texture}" for vertex, texture in zip(face, uv_face, strict=True)))
+        corners = [f"{vertex}/{texture}" for vertex, texture in zip(face, uv_face, strict=True)]
+        lines.append("f " + " ".join(corners[::order]))
     return "\n".join(lines) + "\n"

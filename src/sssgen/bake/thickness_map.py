@@ -100,7 +100,7 @@ def thickness_map(
         "parameters": {} if is_transmittance else {"thickness_factor": largest},
         "import": import_settings(),
     }  # fmt: skip
-    return Map(fill_map(value / largest, surface.texels, size), facts, obj(mesh, uv) if new_uv else "")
+    return Map(fill_map(value / largest, surface.texels, size), facts, obj(body, uv) if new_uv else "")
 
 
 def warnings(facts: SurfaceMapFacts) -> list[str]:

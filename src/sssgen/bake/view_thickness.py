@@ -105,7 +105,7 @@ def bake(
         raise failure("no ray enters the mesh: it has no inside", "a flat sheet has no thickness", posix(body.path))
     lowest, highest = fit.coefficients.min(axis=0), fit.coefficients.max(axis=0)
     span = np.maximum(highest - lowest, 1e-6)
-    text = obj(mesh, uv) if new_uv else ""
+    text = obj(body, uv) if new_uv else ""
     identity = body_identity.identity(body, scaled=False)
     if text:  # the map belongs to the mesh that is written with it
         identity["key"] = mesh_key(text.encode())
