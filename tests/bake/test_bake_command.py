@@ -76,7 +76,7 @@ def with_vertex(text: str) -> str:
 
 NOISE = np.random.default_rng(1).integers(0, 256, 4000).astype(np.uint8).tobytes()
 FILES: dict[str, tuple[str, Callable[[], str | bytes], str]] = {
-    "a text": ("a.obj", lambda: "a letter\nto nobody\n", "no triangles"),
+    "a text": ("a.obj", lambda: "a letter\nto nobody\n", "not an .obj file"),
     # trimesh reads noise as text where a package for other encodings is installed: then there are no triangles
     "noise.obj": ("a.obj", lambda: NOISE, "a.obj"),
     "noise.ply": ("a.ply", lambda: NOISE, "cannot be read"),

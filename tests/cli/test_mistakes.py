@@ -126,12 +126,62 @@ def test_functions_are_never_standalone(capsys: pytest.CaptureFixture[str]) -> N
     [
         ("my cow.obj", "this is a mesh, and not a TOML file", 'sssgen use wax "my cow.obj" -o DIR'),
         ("paint.png", "this is a picture, and not a TOML file", "name a material or a scene"),
+        ("index.html", "this is HTML, and not a TOML file", "name the .toml file of a material or a scene"),
+        ("wax.js", "this is JavaScript, and not a TOML file", "name the .toml file of a material or a scene"),
     ],
 )
-def test_a_mesh_or_a_picture_is_no_material_and_no_scene(
+def test_other_kinds_of_files_are_no_materials_and_no_scenes(
     command: str, name: str, message: str, hint: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path(name).write_bytes(b"v 0 0 0\n")
     assert main([name if word == "{}" else word for word in command.split()]) == 2
+    printed, error = capsys.readouterr()
+    assert error.count("error:") == 1 and message in error and hint in error and not printed
+
+
+@pytest.mark.parametrize(
+    ("words", "message", "hint"),
+    [
+        ("use wax scene.toml -o out", "this is a TOML file, and a mesh is needed", "ends in .obj, .ply, .stl"),
+        (
+            "use mine.toml cow.obj -o out",
+            "this is a TOML file, and no preset",
+            "`sssgen preview mine.toml --mesh cow.obj`",
+        ),
+    ],
+)
+def test_use_takes_no_toml_file(words: str, message: str, hint: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words.split()) == 2
     error = capsys.readouterr().err
-    assert error.count("error:") == 1 and message in error and hint in error
+    assert message in error and hint in error and "did you mean" not in error
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.glb", b"\x89PNG\r\n\x1a\n", "this is a PNG picture, not a .glb file"),
+        ("a.obj", b"\x89PNG\r\n\x1a\n", "this is a PNG picture, not an .obj file"),
+        ("a.stl", b"\xff\xd8\xff\xe0", "this is a JPEG picture, not an .stl file"),
+        ("a.stl", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "this is not an .stl file"),
+        ("a.obj", b"solid a\nendsolid a\n", "this is an .stl file, not an .obj file"),
+        ("a.ply", bytes(84), "this is an .stl file, not a .ply file"),
+        ("a.obj", b"words\n", "this is not an .obj file"),
+        ("a.stl", bytes(84), "the file holds no triangles"),
+        ("a.stl", b"solid a\nendsolid a\n", "the file holds no triangles"),
+    ],
+)
+def test_a_file_of_another_kind_is_named(name: str, content: bytes, message: str) -> None:
+    Path(name).write_bytes(content)
+    with pytest.raises(SssgenError, match=message):
+        mesh_files.read(name)
+
+
+def test_missing_surroundings_are_noticed_before_the_work(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sssgen.run.render.scene_render.render", lambda *_, **__: pytest.fail("it works"))
+    Path("scene.toml").write_text('material = "ice"\n[environment]\nfile = "sky.png"\n', encoding="utf-8")
+    assert main(["render", "scene.toml"]) == 2
+    error = capsys.readouterr().err
+    assert "cannot find the file 'sky.png'" in error and "--> scene.toml:3:8" in error
+    assert "it is searched for next to the scene" in error

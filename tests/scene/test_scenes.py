@@ -138,7 +138,7 @@ def test_the_held_out_view_is_turned_about_the_vertical_through_the_target() -> 
         ('[medium]\nior = "glass"\n' + BALL + LIT, "'ior' takes a number", 2),
         ("[medium]\n" + BALL + "[environment]\ncolor = [0, 0, 0]\n", "the environment is black", 4),
         ("[medium]\n" + BALL + "[environment]\nintensity = -1\n", "'intensity' cannot be -1", 5),
-        ("[medium]\n" + BALL + '[environment]\nfile = "none.exr"\n', "cannot find the picture", 5),
+        ("[medium]\n" + BALL + '[environment]\nfile = "none.exr"\n', "searched for next to the scene", 5),
         ("[medium]\n" + BALL + '[environment]\nfile = "none.hdr"\n', "'.hdr' is not a picture", 5),
         ("[medium]\n" + BALL + "[environment]\ncolour = [1, 1, 1]\n", "did you mean 'color'", 5),
         ("[medium]\n" + BALL, "the scene has no light", 1),

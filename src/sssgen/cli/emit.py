@@ -12,7 +12,6 @@ from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_output, add_targe
 from sssgen.cli.output import CHECK_FAILED, OK, print_errors, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
-from sssgen.presets.written_project import write_shaders
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
 from sssgen.support.file_memo import changed_files, noted_files
 from sssgen.support.file_writer import Written
@@ -86,6 +85,8 @@ def run(arguments: Namespace) -> int:
     Where other materials are named, or other targets that can express the material, these are written, and the status
     is 1.
     """
+    from sssgen.presets.written_project import write_shaders
+
     take_default_target(arguments)
     printed = arguments.output == STANDARD_OUTPUT
     if printed and arguments.trace:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.output import OK
 from sssgen.support.paths import folder
+from sssgen.support.text_files import refuse_other_kinds
 
 if TYPE_CHECKING:
     from sssgen.preview.page_messages import PageMessages
@@ -33,6 +34,9 @@ def add_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Serves the page until Ctrl-C."""
     from sssgen.preview.preview_server import PreviewServer
+
+    for name in filter(None, (arguments.NAME, arguments.OTHER)):  # before the address is printed
+        refuse_other_kinds(name)
 
     def announce(line: str) -> None:
         if not arguments.json:

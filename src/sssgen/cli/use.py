@@ -81,6 +81,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.written_project import written_before
 
     _order(arguments)
+    _refuse_material(arguments)
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
     arguments.PRESET = chosen.name
     _check_target(target, arguments.open)
@@ -130,6 +131,15 @@ def _order(arguments: Namespace) -> None:
     first, second = (word.lower().endswith(SUFFIXES) for word in (arguments.PRESET, arguments.MESH))
     if first and not second:
         arguments.PRESET, arguments.MESH = arguments.MESH, arguments.PRESET
+
+
+def _refuse_material(arguments: Namespace) -> None:
+    """Raises SssgenError for a material's or a scene's file in place of a preset."""
+    file = posix(arguments.PRESET)
+    if file.lower().endswith(".toml"):
+        shown = f"sssgen preview {shell_word(file)} --mesh {shell_word(posix(arguments.MESH))}"
+        hint = f"`{shown}` shows it on the mesh; `sssgen render` draws a scene whose [geometry] names the mesh"
+        raise failure("this is a TOML file, and no preset", hint, file)
 
 
 def _check_target(target: str, opens: bool) -> None:

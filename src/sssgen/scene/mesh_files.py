@@ -12,6 +12,7 @@ import numpy as np
 
 from sssgen.ir.spans import Span
 from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.mesh_kinds import refuse_other_kind, without_triangles
 from sssgen.scene.obj_lines import faulty_line, is_doubtful
 from sssgen.scene.obj_polygons import without_concave
 from sssgen.scene.pictures.images import decode_srgb
@@ -47,6 +48,9 @@ class FileContent(NamedTuple):
 def check_suffix(path: str) -> None:
     """Raises SssgenError for a path without the suffix of a mesh file."""
     suffix = os.path.splitext(path)[1].lower()
+    if suffix == ".toml":
+        hint = f"name the file of a mesh, which ends in {', '.join(SUFFIXES)}"
+        raise failure("this is a TOML file, and a mesh is needed", hint, posix(path))
     if suffix not in SUFFIXES:
         hint = did_you_mean(suffix, SUFFIXES) or f"export the mesh as one that ends in {', '.join(SUFFIXES)}"
         raise failure(f"'{suffix}' is not a mesh file's suffix", hint, posix(path))
@@ -82,6 +86,7 @@ def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = ""
     trimesh, data = need("trimesh"), b""
     try:
         data = content()
+        refuse_other_kind(data, kind, shown)
         if kind in (".glb", ".gltf"):
             _refuse_compressed(data, kind, shown)
             # texture coordinates are loaded with the materials
@@ -90,6 +95,8 @@ def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = ""
         read = without_concave(data.replace(b"\t", b" ")) if kind == ".obj" else data
         loaded = trimesh.load_mesh(io.BytesIO(read), file_type=kind[1:], process=False, skip_materials=True)
         uv, color = getattr(loaded.visual, "uv", None), _colors(loaded)
+        if not len(loaded.faces):
+            raise without_triangles(data, kind, shown)
         if kind == ".obj" and is_doubtful(data, uv is not None):
             _refuse_faulty_line(data, shown)
         if color is not None:  # of a file format without a colour space: as its editors show them

@@ -377,7 +377,8 @@ class _Reader:
         return os.path.join(self.folder, name)
 
     def check_pictures(self, scene: Scene) -> None:
-        """Reports the textures whose files are missing; of a baked one, with the command that bakes it."""
+        """Reports the textures whose files are missing; of a baked one, with the command that bakes it. Likewise the
+        picture of the surroundings, of another kind of which `read_environment` reports."""
         missing = {key: name for key, (_, name) in self.pictures.items() if not self.has_file(name)}
         hints: dict[str, str] = {}
         if missing and scene.material:
@@ -389,6 +390,10 @@ class _Reader:
                         hints |= dict.fromkeys(given, advice(function, material, scene, given, in_scene=True))
         for key, name in missing.items():
             self.missing_file(self.pictures[key][0], name, hints.get(key, ""))
+        surroundings = scene.measured.get("environment")
+        file = surroundings.get("file") if isinstance(surroundings, dict) else None
+        if isinstance(file, str) and file.lower().endswith(images.TEXTURES) and not self.has_file(file):
+            self.missing_file(("environment", "file"), file)
 
     def file(self, path: Path, name: str) -> str:
         """The path of a file that the scene names."""

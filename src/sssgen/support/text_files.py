@@ -18,6 +18,11 @@ MAX_BYTES = 4 << 20
 TEXTS = (".toml", ".sss", ".glsl")
 """The suffixes of the texts that most commands read."""
 _MESHES = (".obj", ".ply", ".stl", ".glb", ".gltf", ".fbx", ".blend", ".usd", ".usdz", ".dae")
+_CODE = {
+    ".html": "HTML", ".htm": "HTML", ".js": "JavaScript", ".mjs": "JavaScript", ".ts": "TypeScript", ".css": "CSS",
+    ".json": "JSON", ".md": "Markdown", ".gd": "GDScript", ".py": "Python",
+}  # fmt: skip
+"""The suffixes of other texts of a project → their languages."""
 _PICTURES = (".png", ".jpg", ".jpeg", ".exr", ".hdr", ".npy", ".tif", ".tiff", ".webp", ".dds", ".ktx2")
 
 
@@ -88,13 +93,16 @@ def refuse_special(path: str | os.PathLike[str], shown: str) -> None:
 
 
 def refuse_other_kinds(path: str | os.PathLike[str]) -> None:
-    """Raises SssgenError for a file where TOML is wanted, whose name says that it is a mesh or a picture."""
+    """Raises SssgenError for a file where TOML is wanted, whose name says that it is of another kind."""
     shown, suffix = posix(path), os.path.splitext(os.fspath(path))[1].lower()
     if suffix in _MESHES:
         hint = f"put a ready material on it: sssgen use wax {shell_word(shown)} -o DIR"
         raise failure("this is a mesh, and not a TOML file", hint, shown)
     if suffix in _PICTURES:
         raise failure("this is a picture, and not a TOML file", "name a material or a scene that uses it", shown)
+    if suffix in _CODE:
+        hint = "name the .toml file of a material or a scene"
+        raise failure(f"this is {_CODE[suffix]}, and not a TOML file", hint, shown)
 
 
 def refuse_folder(path: str | os.PathLike[str], suffixes: Sequence[str] = TEXTS, usual: str = "") -> None:
