@@ -293,7 +293,7 @@ def test_faulty_meshes(tmp_path: Path) -> None:
     assert "cannot find the mesh" in wrong("none.obj")
     assert "not a mesh file's suffix" in wrong("ball.fbx", "")
     assert "no triangles" in wrong("empty.obj", "")
-    assert "no triangles" in wrong("text.stl", "hello")
+    assert "this is not an .stl file" in wrong("text.stl", "hello")
     assert "cannot be read" in wrong("text.ply", "hello")
     assert "cannot be read" in wrong("text.glb", "hello")
     assert "refers to vertex 9" in wrong("index.obj", triangle + "f 1 2 9\n")

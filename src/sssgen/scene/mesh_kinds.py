@@ -30,7 +30,7 @@ def without_triangles(data: bytes, suffix: str, shown: str) -> SssgenError:
     """The error for a file in which no triangle was found."""
     begins = data.lstrip()[:5].lower()
     is_right = {".stl": begins == b"solid" or _is_binary_stl(data), ".obj": b"v " in data}
-    if not is_right.get(suffix, True):
+    if data and not is_right.get(suffix, True):
         return failure(f"this is not {TITLES[suffix]}", "it may be another kind of file: export it again", shown)
     return failure("the file holds no triangles", "", shown)
 
