@@ -206,14 +206,19 @@ def test_an_inverted_mesh_has_the_same_thickness() -> None:
         warning == "the mesh is inside out: all its triangles are turned for the bake and in the mesh that is written"
     )
     Path("written.obj").write_text(wrong.mesh, encoding="utf-8")
-    written, given = Mesh(path="written.obj"), Mesh(path="turned.obj")
-    assert (
-        given.inside_out
-        and not written.inside_out
-        and has_measures(wrong.facts["mesh"], written.triangles.places, written.triangles.corners)
-    )
+    written = Mesh(path="written.obj").triangles
+    assert Mesh(path="turned.obj").triangles.reversed and not written.reversed
+    assert has_measures(wrong.facts["mesh"], written.places, written.corners)
     again = thickness_map("written.obj", (48, 48), Request(rays=64), processes=0)
     assert again.values == pytest.approx(wrong.values, abs=1e-3) and warnings(again.facts) == []
+
+
+def test_an_inverted_mesh_with_a_hole_is_written_outwards() -> None:
+    box = meshes.box()
+    path = write(Path("box.obj"), box._replace(faces=box.faces[:-2, ::-1], uv=None))
+    assert Mesh(path=path).inside_out
+    Path("written.obj").write_text(thickness_map(path, (24, 16), Request(rays=64), processes=0).mesh, encoding="utf-8")
+    assert not Mesh(path="written.obj").inside_out
 
 
 def test_a_hole_is_reported_and_its_rays_do_not_count() -> None:

@@ -84,7 +84,7 @@ def _mended(mesh: Mesh, needs: MeshNeeds) -> list[str]:
     if copies := mesh.triangles.repeated:
         times = "1 triangle is there twice: it is" if copies == 1 else f"{copies} triangles are there twice: they are"
         messages.append(f"{times} left out {place}")
-    if mesh.inside_out and (needs.inside or mesh.closed):  # of a sheet there is no inside
+    if mesh.triangles.reversed or (mesh.inside_out and needs.inside):  # of a sheet there is no inside
         messages.append(f"the mesh is inside out: all its triangles are turned {place}")
     return messages
 
