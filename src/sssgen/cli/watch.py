@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from sssgen.cli.emit import add_emission_options, chosen_targets, compile_all, report, take_default_target, written_rows
 from sssgen.cli.options import add_output
 from sssgen.cli.output import OK, failure_report, print_errors, print_warnings
+from sssgen.presets.written_project import write_shaders
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_changes import FolderMessages, changes
 from sssgen.support.file_memo import FileState, noted_files
@@ -78,8 +79,6 @@ class Watch:
             print(f"watching {len(self.files)} files; Ctrl-C ends it", flush=True)
 
     def _write(self, emitted: EmittedFiles) -> None:
-        from sssgen.presets.written_project import write_shaders
-
         written = write_shaders(self.arguments.output, emitted.files, self.arguments.force)
         if self.arguments.json:
             rows = written_rows(emitted, written)
