@@ -27,6 +27,7 @@ from sssgen.lang.check.type_names import array_type
 from sssgen.lang.check.wording import a_type, type_hint
 from sssgen.lang.syntax import tree as s
 
+_S = TypeVar("_S")
 _T = TypeVar("_T")
 
 
@@ -169,7 +170,7 @@ class ExpressionChecker:
             return target._replace(index=self.context.function.temporary("place", target.index, start))
         return target
 
-    def with_prelude(self, expression: s.Expression, check: Callable[[s.Expression], _T]) -> tuple[_T, list[ir.Stmt]]:
+    def with_prelude(self, expression: _S, check: Callable[[_S], _T]) -> tuple[_T, list[ir.Stmt]]:
         """The result of `check` for an expression, and the prelude of this expression alone."""
         function = self.context.function
         outer, function.prelude = function.prelude, []
