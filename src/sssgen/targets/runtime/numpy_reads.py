@@ -40,11 +40,31 @@ def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
     return texture.level(place, dFdx(place), dFdy(place)) + bias
 
 
+def _is_whole(texture: Texture) -> bool:
+    """Whether its texels are integers, which have no filter."""
+    return texture.levels[0].dtype.kind in "iu"
+
+
+def _nearest(texture: Texture, coord: Value, level: Value, offset: Value = ()) -> Value:
+    """The nearest texel of a texture of integers, which repeats: `ir.intrinsics.integer_reads`. It is no cube."""
+    level = np.int32(np.round(np.ravel(level)[0]))
+    places = []
+    for axis, (part, size) in enumerate(zip(coord, textureSize(texture, level), strict=True)):
+        if axis < texture.axes:
+            place = np.minimum(((part - np.floor(part)) * size).astype(np.int32), size - 1)
+            places.append((place + offset[axis]) % size if len(offset) else place)
+        else:
+            places.append(np.clip(np.round(part), 0, size - 1).astype(np.int32))
+    return texelFetch(texture, np.array(np.broadcast_arrays(*places)), level)
+
+
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
     """With mipmaps it needs a `grid`, for the derivatives. For a texture that compares, the last component is the
     reference."""
     if texture.compare:
         return textureCompare(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return _nearest(texture, coord, 0)
     return texture.sample(coord, _by_derivatives(texture, coord, bias))
 
 
@@ -52,12 +72,16 @@ def textureOffset(texture: Texture, coord: Value, offset: Value, bias: Value = 0
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return _nearest(texture, coord, 0, offset)
     return texture.sample(coord, _by_derivatives(texture, coord, bias), _first(offset))
 
 
 def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return _nearest(texture, coord, level)
     return texture.sample(coord, level)
 
 
@@ -65,12 +89,16 @@ def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return _nearest(texture, coord, level, offset)
     return texture.sample(coord, level, _first(offset))
 
 
 def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return _nearest(texture, coord, 0)
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy))
 
 
@@ -78,6 +106,8 @@ def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offs
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return _nearest(texture, coord, 0, offset)
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy), _first(offset))
 
 
