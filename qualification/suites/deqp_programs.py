@@ -51,16 +51,20 @@ def stage_text(case: Case, stage: str) -> str:
             lines.append(f"{flat}{inputs} {value.type} {value.name};")
         elif value.kind == "output":
             lines.append(f"{outputs} {value.type} {value.name};".strip())
-        elif "." not in value.name:
+        elif _lacks(text, value):
             lines.append(f"uniform {value.type} {value.name};")
     declarations = "\n".join(lines)
-    color = "gl_FragColor" if is_old else "sssgen_shown"
+    color = "gl_FragColor" if is_old else "dEQP_FragColor"
     shown = "" if is_old or not fragment else f"layout(location = 0) out mediump vec4 {color};\n"
+    position = f"{'attribute' if is_old else 'in'} highp vec4 dEQP_Position;\n"
     marks = {
-        "DECLARATIONS": declarations, "FRAGMENT_DECLARATIONS": shown + declarations,
-        "VERTEX_DECLARATIONS": declarations, "FRAG_COLOR": color, "POSITION_FRAG_COLOR": color if fragment else "gl_Position",
-        "VERTEX_OUTPUT": "gl_Position = vec4(0.0);",
-    }  # fmt: skip
+        "DECLARATIONS": (shown if fragment else position) + declarations,
+        "FRAGMENT_DECLARATIONS": shown + declarations,
+        "VERTEX_DECLARATIONS": position + declarations,
+        "FRAG_COLOR": color,
+        "POSITION_FRAG_COLOR": color if fragment else "gl_Position",
+        "VERTEX_OUTPUT": "gl_Position = dEQP_Position;",
+    }
     return _MARK.sub(lambda mark: marks.get(mark[1], ""), text)
 
 
@@ -76,12 +80,22 @@ def function_text(case: Case) -> Plain:
         raise failure("the case has several stages")
     if any("." in value.name or "[" in value.name for value in case.values):
         raise failure("the case sets members of uniforms")
-    lines = [f"{value.type} {value.name};" for value in case.values]
+    text = case.stages[BOTH]
+    lines = [
+        f"{'uniform ' if value.kind == 'uniform' else ''}{value.type} {value.name};"
+        for value in case.values
+        if value.kind != "uniform" or _lacks(text, value)
+    ]
     marks = {"DECLARATIONS": "\n".join(lines), "POSITION_FRAG_COLOR": "gl_FragColor"}
-    if case.version and "POSITION_FRAG_COLOR" in case.stages[BOTH]:
-        marks |= {"POSITION_FRAG_COLOR": "sssgen_shown"}
-        marks["DECLARATIONS"] += "\nvec4 sssgen_shown;"
+    if case.version not in ("", "100 es") and "POSITION_FRAG_COLOR" in case.stages[BOTH]:
+        marks["POSITION_FRAG_COLOR"] = "dEQP_FragColor"
+        marks["DECLARATIONS"] += "\nvec4 dEQP_FragColor;"
     return plain(_MARK.sub(lambda mark: marks.get(mark[1], ""), case.stages[BOTH]))
+
+
+def _lacks(text: str, uniform: Value) -> bool:
+    """Whether a text does not declare a uniform itself."""
+    return re.search(rf"\buniform\b[^;{{}}]*\b{uniform.name}\b", text) is None and "." not in uniform.name
 
 
 class CaseProgram:
@@ -94,7 +108,7 @@ class CaseProgram:
         (probes,) = probe_functions(module, functions, written.text)
         if probes.reason:
             raise failure(f"the runner cannot call it: {probes.reason}")
-        self.skipped = ""
+        self.skipped = "it counts lines" if "__LINE__" in written.text else ""
         """Why the runner cannot run it; '' where it can."""
         self.outputs = {value.name: value for value in case.values if value.kind == "output"}
         self.probes = tuple([probe for probe in probes.probes if probe.output in self.outputs])
@@ -102,13 +116,19 @@ class CaseProgram:
         self.function = DrivenFunction(
             FunctionProbes(probes.function, self.probes), written, load(text, case.name, written.version), machines
         )
-        self.lanes = max(len(value.rows) for value in case.values)
-        given = {value.name: value for value in case.values if value.kind == "input" or value.kind == "uniform"}
+        given = {value.name: value for value in case.values if value.kind != "output"}
         given |= self.initial_values(module, given)
         leaves = self.probes[0].leaves if self.probes else ()
         types = {leaf.name: (leaf.type, leaf.path) for leaf in leaves}
-        types |= {name: (param.type, name) for name, param in self.function.uniforms().items()}
-        self.inputs = Inputs({name: self.numbers(type_, given.get(path)) for name, (type_, path) in types.items()}, {})
+        uniforms = self.function.uniforms()
+        types |= {name: (param.type, name) for name, param in uniforms.items()}
+        count = max(len(value.rows) for value in case.values)
+        # a uniform has one value in each run
+        self.runs = [range(row, row + 1) for row in range(count)] if uniforms else [range(count)]
+        self.inputs = [
+            Inputs({name: numbers(type_, given.get(path), rows) for name, (type_, path) in types.items()}, {})
+            for rows in self.runs
+        ]
 
     def initial_values(self, module: Module, given: Mapping[str, Value]) -> dict[str, Value]:
         """The values that the text gives to its own variables: a probe sets all that a function reads."""
@@ -123,28 +143,28 @@ class CaseProgram:
                     values[variable.name] = Value("initial", spell(variable.type), variable.name, (row,))
         return values
 
-    def numbers(self, type_: Type, value: Value | None) -> Array:
-        """The numbers of a value, lanes last; zeros for a variable that the case does not set."""
-        rows = value.rows if value else ((0.0,) * components(type_),)
-        shape = (*shape_of(type_), self.lanes)
-        lanes = np.array([rows[min(lane, len(rows) - 1)] for lane in range(self.lanes)], np.float64)
-        return lanes.T.reshape(shape).astype(KINDS[kind_of(type_)])
-
     def original(self) -> Answer:
         """What the driver makes of the author's text."""
-        return self.answer(self.function.original(self.inputs))
+        return self.answer([self.function.original(inputs) for inputs in self.inputs])
 
     def translation(self, backend: str) -> Answer:
         """What a back end makes of its translation."""
-        return self.answer(self.function.run_translation(backend, self.inputs))
+        return self.answer([self.function.run_translation(backend, inputs) for inputs in self.inputs])
 
-    def answer(self, results: list[Array]) -> Answer:
-        """Whether the outputs are as expected."""
-        for probe, result in zip(self.probes, results, strict=True):
-            expected = self.numbers(probe.result, self.outputs[probe.output])
-            exact = kind_of(probe.result) != "float"
-            apart = np.abs(result.astype(np.float64) - expected.astype(np.float64))
-            limit = 0.0 if exact else NEAR + NEAR * np.abs(expected)
-            if not (apart <= limit).all():
-                return Answer(False, f"{probe.output} is {result.tolist()}, {expected.tolist()} is expected")
+    def answer(self, results: list[list[Array]]) -> Answer:
+        """Whether the outputs of all runs are as expected."""
+        for rows, outputs in zip(self.runs, results, strict=True):
+            for probe, result in zip(self.probes, outputs, strict=True):
+                expected = numbers(probe.result, self.outputs[probe.output], rows)
+                apart = np.abs(result.astype(np.float64) - expected.astype(np.float64))
+                limit = NEAR + NEAR * np.abs(expected) if kind_of(probe.result) == "float" else 0.0
+                if not (apart <= limit).all():
+                    return Answer(False, f"{probe.output} is {result.tolist()}, {expected.tolist()} is expected")
         return Answer(True)
+
+
+def numbers(type_: Type, value: Value | None, rows: range) -> Array:
+    """The numbers of a value in some rows, lanes last; zeros for a variable that the case does not set."""
+    given = value.rows if value else ((0.0,) * components(type_),)
+    lanes = np.array([given[min(row, len(given) - 1)] for row in rows], np.float64)
+    return lanes.T.reshape(*shape_of(type_), len(rows)).astype(KINDS[kind_of(type_)])
