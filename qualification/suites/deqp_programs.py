@@ -65,7 +65,8 @@ def stage_text(case: Case, stage: str) -> str:
         "POSITION_FRAG_COLOR": color if fragment else "gl_Position",
         "VERTEX_OUTPUT": "gl_Position = dEQP_Position;",
     }
-    return _MARK.sub(lambda mark: marks.get(mark[1], ""), text)
+    text = _MARK.sub(lambda mark: marks.get(mark[1], ""), text)
+    return text if case.version not in ("", "100 es") or "#version" in text else f"#version 100\n{text}"
 
 
 def load_stage(case: Case, stage: str) -> Module:
