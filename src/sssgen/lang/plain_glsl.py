@@ -110,7 +110,9 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     file = parse_tokens(tokens, comments, reporter, plain=True)
     if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
         head = []  # it documents a declaration
-    module = check_plain(file, reporter, _is_vertex(tokens, label))
+    es = source.version if source.profile == "es" else 0
+    converts = any("implicit_conversions" in extension for extension in source.extensions)
+    module = check_plain(file, reporter, _is_vertex(tokens, label), es, converts)
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sssgen.support.diagnostics import Reporter
 from sssgen.lang.syntax.tokens import Token
+from sssgen.support.diagnostics import Reporter
 
 MOST_LETTERS = 1024
 """Of a name: GLSL ES 3.00, section 3.9."""
@@ -42,6 +42,20 @@ RESERVED = {
     310: frozenset(f"{_ALWAYS} {_LATER}".split()),
 }
 """Version of GLSL ES → the words that no text may have."""
+
+ES_BUILTINS = frozenset(
+    """
+    radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt inversesqrt
+    abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf floatBitsToInt
+    floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16 unpackUnorm2x16
+    packHalf2x16 unpackHalf2x16 length distance dot cross normalize faceforward reflect refract matrixCompMult
+    outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any
+    all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset textureProjOffset
+    textureLodOffset textureProjLod textureProjLodOffset textureGrad textureGradOffset textureProjGrad
+    textureProjGradOffset dFdx dFdy fwidth
+    """.split()  # noqa: SIM905
+)
+"""The builtin functions of GLSL ES 3.00, which a text of this version or a later one may not define."""
 
 _ORDER = {
     "invariant": 0, "flat": 1, "smooth": 1, "const": 2, "centroid": 2, "uniform": 3, "attribute": 3, "varying": 3,

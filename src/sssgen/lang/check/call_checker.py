@@ -154,7 +154,7 @@ class CallChecker:
                 message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {len(args)}"
                 raise self.context.fail(call.span, message, f"it is declared as {signature_text(name, only)}")
             return only
-        if self.context.plain:
+        if self.context.converts:
             viable = [signature for signature in overloads if _is_viable(signature, types)]
             if viable:
                 return min(viable, key=lambda signature: _conversion_cost(signature, types))
@@ -191,7 +191,7 @@ class CallChecker:
         """A call of a builtin."""
         values = tuple([arg.expr for arg in args])
         result = resolve(name, [value.type for value in values])
-        if result is None and self.context.plain:
+        if result is None and self.context.converts:
             for converted in _conversions(values):
                 result = resolve(name, [value.type for value in converted])
                 if result is not None:

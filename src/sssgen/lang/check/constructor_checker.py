@@ -55,7 +55,7 @@ class ConstructorChecker:
     def construct_parts(self, type_: Array | Struct, call: s.CallOf) -> Typed:
         """The constructor of an array or a struct, with its arguments converted where GLSL does so."""
         args = self.expressions.operands(call.args)
-        if self.context.plain:
+        if self.context.converts:
             for index, (arg, part) in enumerate(zip(args, _part_types(type_), strict=False)):
                 if converts(arg.expr.type, part):
                     args[index] = arg._replace(expr=as_kind(arg.expr, kind_of(part)))

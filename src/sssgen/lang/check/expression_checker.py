@@ -69,7 +69,7 @@ class ExpressionChecker:
         """The expression as a value of this type, converted where GLSL does so; reports where it does not fit."""
         expr = typed.expr
         if expr.type != type_:
-            if not self.context.plain or not converts(expr.type, type_):
+            if not self.context.converts or not converts(expr.type, type_):
                 message = f"{what} must be {a_type(type_)}, but this is {a_type(expr.type)}"
                 raise self.context.fail(span, message, type_hint(expr, type_))
             expr = as_kind(expr, kind_of(type_))

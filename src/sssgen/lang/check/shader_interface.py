@@ -17,6 +17,11 @@ from sssgen.lang.check.type_names import named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
+_MEMBER = {"uniform", "lowp", "mediump", "highp"}
+_MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
+_BLOCK_LAYOUT = _MEMBER_LAYOUT | {"std140", "shared", "packed", "binding", "set", "push_constant", "location"}
+"""What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
+
 
 class ShaderInterface:
     """Checks these variables of one file; `vertex` says that it is a vertex shader."""
@@ -139,15 +144,29 @@ class ShaderInterface:
         return members
 
     def check_uniform_block(self, block: s.BlockSyntax) -> None:
-        context = self.context
-        if block.name.text in context.uniform_blocks:
+        context, name = self.context, block.name
+        if name.text in context.uniform_blocks:
             hint = "a block is declared once: give the other one another name"
-            raise context.fail(block.name.span, f"the block '{block.name.text}' is already declared", hint)
-        context.uniform_blocks.add(block.name.text)
+            raise context.fail(name.span, f"the block '{name.text}' is already declared", hint)
+        check_global_name(context, name)
+        context.uniform_blocks.add(name.text)
+        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, _BLOCK_LAYOUT)
         for member in block.members:
             if "sampler" in member.type.name:
                 hint = "declare it outside of the block, as a uniform"
                 raise context.fail(member.type.span, "a block cannot contain textures", hint)
+            if member.type.struct is not None:
+                raise context.fail(member.type.span, "a block cannot declare a struct", "declare it before the block")
+            self.check_qualifiers(member.qualifiers, "a member of a uniform block", _MEMBER, _MEMBER_LAYOUT)
+
+    def check_qualifiers(self, qualifiers: s.Qualifiers, what: str, keywords: set[str], layout: frozenset[str]) -> None:
+        """Reports a qualifier that `what` cannot have."""
+        for keyword in qualifiers.keywords:
+            if keyword not in keywords:
+                raise self.context.fail(qualifiers.span, f"{what} cannot be '{keyword}'")
+        for item, _ in qualifiers.layout:
+            if item not in layout:
+                raise self.context.fail(qualifiers.span, f"{what} has no layout '{item}'")
 
     def uniforms_of(
         self, block: s.BlockSyntax, members: list[s.GlobalSyntax], uniforms: list[ir.Uniform]
@@ -181,6 +200,7 @@ class ShaderInterface:
         context = self.context
         instance: dict[str, Typed] = {}
         if block.instance is not None and members:
+            check_global_name(context, block.instance)
             context.blocks[block.instance.text] = instance
         for written, member in zip(block.members if members else (), members, strict=True):
             for declarator, renamed in zip(written.declarators, member.declaration.declarators, strict=True):
