@@ -8,6 +8,7 @@ Source: section 3.8 of GLSL ES 1.00, section 3.9 of GLSL ES 3.00 and 3.7 of 3.10
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from sssgen.lang.syntax.tokens import Token
 from sssgen.support.diagnostics import Reporter
@@ -46,8 +47,8 @@ RESERVED = {
 ES_BUILTINS = frozenset(
     """
     radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt inversesqrt
-    abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf floatBitsToInt
-    floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16 unpackUnorm2x16
+    abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf
+    floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16 unpackUnorm2x16
     packHalf2x16 unpackHalf2x16 length distance dot cross normalize faceforward reflect refract matrixCompMult
     outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any
     all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset textureProjOffset
@@ -56,6 +57,9 @@ ES_BUILTINS = frozenset(
     """.split()  # noqa: SIM905
 )
 """The builtin functions of GLSL ES 3.00, which a text of this version or a later one may not define."""
+
+_LATER_OPERATORS = frozenset({"%", "~", "<<", ">>", "&", "|", "^", "%=", "<<=", ">>=", "&=", "|=", "^="})
+"""What GLSL ES 1.00 reserves."""
 
 _ORDER = {
     "invariant": 0, "flat": 1, "smooth": 1, "const": 2, "centroid": 2, "uniform": 3, "attribute": 3, "varying": 3,
@@ -75,6 +79,12 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
         for token in tokens:
             if token.text in reserved:
                 reporter.error(token.span, f"'{token.text}' is a reserved word of {shown}", "choose another name")
+        for token in _keywords_as_names(tokens) if version >= 300 else ():
+            reporter.error(token.span, f"'{token.text}' is a keyword of {shown}", "choose another name")
+        if version == 100:
+            for token in tokens:
+                if token.text in _LATER_OPERATORS:
+                    reporter.error(token.span, f"{shown} has no operator '{token.text}'", "write #version 300 es")
         if version < 310:
             for token in _misplaced(tokens):
                 reporter.error(
@@ -83,6 +93,13 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
                     "the order is: invariant, flat, const, in, highp",
                 )
     reporter.check()
+
+
+def _keywords_as_names(tokens: Sequence[Token]) -> Iterator[Token]:
+    """The keywords of GLSL ES 3.00 behind a type: the parser takes them for names, as those of older texts."""
+    for before, token in pairwise(tokens):
+        if before.type == "TYPE" and token.text in ("flat", "smooth", "centroid", "invariant"):
+            yield token
 
 
 def _misplaced(tokens: Sequence[Token]) -> Iterator[Token]:

@@ -50,6 +50,8 @@ class GlobalChecker:
             raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)
+        if "invariant" in keywords and ("uniform" in keywords or "const" in keywords):
+            raise context.fail(declaration.qualifiers.span, "only what stages pass can be invariant")
         if "uniform" in keywords:
             for declarator in declaration.declarators:
                 elements = self.interface.textures(declaration, declarator)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Sampler, Type
+from sssgen.ir.types import VOID, Sampler, Struct, Type, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
@@ -38,6 +38,7 @@ class ShaderInterface:
             raise context.fail(declaration.qualifiers.span, "a storage buffer is a block: buffer Name { … };")
         storage = self.storage(keywords)
         element, quantity = named_type(context, replace(declaration.type, lengths=()))
+        self.check_passed(declaration, storage, element)
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
@@ -66,6 +67,22 @@ class ShaderInterface:
                 interpolation, location = "", -1
             context.variables[name] = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
             context.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
+
+    def check_passed(self, declaration: s.Declaration, storage: str, element: Type) -> None:
+        """Reports what GLSL ES does not pass to or between stages."""
+        context, keywords = self.context, declaration.qualifiers.keywords
+        if not context.es or storage not in ("in", "out"):
+            return
+        span, kind = declaration.qualifiers.span, kind_of(element)
+        if "invariant" in keywords and storage == "in" and context.es >= 300:
+            raise context.fail(span, "an input cannot be invariant", "write it before the output of the other stage")
+        if kind == "bool" and not isinstance(element, Struct):
+            raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
+        if "varying" in keywords and kind != "float":
+            raise context.fail(span, f"a varying is a float, a vector or a matrix, but this is {a_type(element)}")
+        is_fragment_input = storage == "in" and not self.vertex
+        if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
+            raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
 
     def initial_value(self, value: s.Expression, type_: Type, quantity: str, name: str) -> ir.Expr:
         """The value of a variable before main()."""
