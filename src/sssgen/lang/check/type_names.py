@@ -50,6 +50,7 @@ def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Express
     is_nested = len(lengths) > 1 or isinstance(element, Array)
     if isinstance(element, Sampler | Void) or (is_nested and (not context.plain or 0 < context.es < 310)):
         message = f"there are no arrays of {'arrays' if is_nested else spell(element)}"
+        message += " before GLSL ES 3.10" if is_nested and context.es else ""
         raise context.fail(lengths[0].span, message)
     total = math.prod(unnested(element)[1])
     for index, length in reversed([*enumerate(lengths)]):

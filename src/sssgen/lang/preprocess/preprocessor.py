@@ -389,8 +389,8 @@ class _Run:
             return
         versions = _ES_VERSIONS if match[2] == "es" else _VERSIONS
         if int(match[1]) not in versions:
-            shown = ", ".join(map(str, versions))
-            self.error(place, f"there is no version {arguments}", f"the versions are {shown}; with es: 300, 310, 320")
+            hint = f"the versions{' of GLSL ES' if match[2] == 'es' else ''} are {', '.join(map(str, versions))}"
+            self.error(place, f"there is no version {arguments}", hint)
         if self.version not in (0, int(match[1])):
             self.error(place, f"the version is already {self.version}")
         elif self.tokens or self.text_macros:
@@ -412,7 +412,7 @@ class _Run:
         macros, constants = self.expander.macros, self.constants
         if macro.name in macros and macros[macro.name].same_as(macro):
             return
-        if keep and macro.name in self.text_macros:
+        if keep and self.version and macro.name in self.text_macros:
             self.error(tokens[0].span, f"'{macro.name}' is already defined as something else", f"#undef {macro.name}")
         self.undefine(macro.name)
         if keep:
