@@ -14,6 +14,7 @@ from textwrap import wrap
 from typing import Any
 
 import gallery_loop
+from gallery_items import PICTURED, pictured
 
 import sssgen
 from sssgen.cli.options import add_workers
@@ -59,15 +60,17 @@ CAPTIONS = {
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
     "through the wax in a 3-D distance texture, which is computed from the geometry: the ears glow, the body stays "
     "dark. `scene_mesh.toml` in the same folder draws Blender's monkey, if you have its mesh.",
-    "ice": "Ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and normals, the "
-    "sun is behind them, light moves in the veins below; snow lies at the foot, and the edges and some holes melt.",
+    "ice": "A cave in a glacier: ice after Zucconi's fast subsurface scattering. Voronoi facets give thickness and "
+    "normals, the sun is behind them, and light moves in the veins below. The roof is thicker inside, so that light "
+    "comes from the mouth; snow is a part of the body. The material `ice` has a cover of snow and holes that melt.",
     "resin_inlay": "Subsurface parallax: marquetry below clear resin. Refraction determines where the inlay appears: "
     "flat below the flat top, distorted below the round edges.",
     "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: refracted parallax places the leaves "
     "below the surface of the ice, and the light of the low sun passes through around them.",
     "jade_ring": "Light that is scattered inside the body, on jade. The program draws the back faces from the eye and "
-    "a depth map from the light for each frame: nothing is baked, and the ring needs no texture coordinates. Its "
-    "diffuse reflection is small, because the scattered light contains the light that enters in front.",
+    "a depth map from the light for each frame: nothing is baked, and the bangles need no texture coordinates. Their "
+    "diffuse reflection is small, because the scattered light contains the light that enters in front. Clouds and "
+    "veins are noise at the place from which the light comes.",
     "marble_idol": "Baked light inside a body, on marble. `sssgen bake fluence` has traced light through the bust, for "
     "lights from everywhere: the sun may move. Two volumes of 8 bits and a table hold it, 90 kB together. What is "
     "scattered once is computed exactly, with the same two drawn textures as in `jade_ring`. `scene_relit.toml` in the "
@@ -91,10 +94,10 @@ ALTERNATIVE_TEXTS = {
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
-    "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
+    "ice": "A cave of blue ice, bright around its mouth, with snow on its floor and mountains outside",
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
-    "jade_ring": "A thick ring of green jade with bright edges towards the light behind it",
+    "jade_ring": "Two bangles of clouded green jade on dark slate: one leans on the other, with the light behind them",
     "marble_idol": "A smooth marble bust with folded arms, bright on the right where the sun is behind it",
 }
 """The alternative text of each picture."""
@@ -139,7 +142,7 @@ def page(present: list[Backend], small: dict[str, list[str]], large: dict[str, l
         ),
     ]
     for name, caption in CAPTIONS.items():
-        lines += _entry(load_material(name), caption)
+        lines += _entry(name, caption)
     lines += [
         "## The same picture everywhere",
         "",
@@ -187,21 +190,30 @@ def _row(name: str, cells: list[str]) -> str:
     return f"| `{name}` | {' | '.join(cells)} |"
 
 
-def _entry(material: Material, caption: str) -> list[str]:
-    name = material.name
+def _entry(name: str, caption: str) -> list[str]:
+    path = pictured(name).material
+    material = load_material(path)
     return [
         f"## {material.title}",
         "",
         f"![{ALTERNATIVE_TEXTS[name]}](gallery/{name}.png)",
         "",
         *_paragraph(caption),
-        f"`sssgen render {name} -o {name}.png`",
-        "",
+        *_paragraph(_command(name)),
         *(line for stage in dict.fromkeys(_techniques(material)) for line in _item(stage)),
         "",
         *_paragraph(f"Requires: {', '.join(describe(material.stages)) or 'any mesh'}."),
-        *_paragraph(f"Cost: {_cost(name)}."),
+        *_paragraph(f"Cost: {_cost(path)}."),
     ]
+
+
+def _command(name: str) -> str:
+    """The command that draws the picture, and the one that draws the example's own scene."""
+    plain = f"`sssgen render {name} -o {name}.png`"
+    if name not in PICTURED:
+        return plain
+    file = f"examples/{name}/{PICTURED[name]}"
+    return f"`sssgen render {file} -o {name}.png`; {plain} draws the material `{name}` on a plain body."
 
 
 def _techniques(material: Material) -> Iterator[str]:
@@ -210,9 +222,9 @@ def _techniques(material: Material) -> Iterator[str]:
         yield f"`{stage.technique.name}` ({stage.technique.role}): {stage.technique.doc['source']}"
 
 
-def _cost(name: str) -> str:
+def _cost(material: str) -> str:
     """The cost of a fragment, and of each light in addition."""
-    entries = sssgen.compile(name, "glsl-330").reflection["entries"].values()
+    entries = sssgen.compile(material, "glsl-330").reflection["entries"].values()
     lights = {"L", "L_object", "light_color", "light_nearness"}
     parts = {
         "a fragment": [entry for entry in entries if not lights & {*entry["inputs"]}],

@@ -24,6 +24,12 @@ from sssgen.scene.scene_loading import load
 from sssgen.support.extras import need
 from sssgen.support.paths import place
 
+PICTURED = {"ice": "scene_cave.toml", "jade_ring": "scene_bangles.toml"}
+"""The scenes of pictures that do not show an example's own scene, which is a plain body for the tests of engines."""
+
+DETAILED = ("ice", "leaves")
+"""Pictures so full of detail that 7 bits of a channel are enough, which makes them a sixth smaller."""
+
 _drawing = threading.Lock()
 """The back ends of a worker draw one picture at a time."""
 
@@ -38,11 +44,13 @@ class PictureDifference(NamedTuple):
 
 
 def picture(example: str) -> bytes:
-    """An example's scene as PNG, drawn by OpenGL."""
+    """The picture of an example as PNG, drawn by OpenGL."""
     with _drawing:
-        color = render(_scene(example), _backend("gl")).encoded
+        color = render(pictured(example), _backend("gl")).encoded
     buffer = io.BytesIO()
-    need("PIL.Image", "pillow").fromarray(np.rint(255.0 * color).astype(np.uint8)).save(buffer, "PNG", optimize=True)
+    steps = 127.0 if example in DETAILED else 255.0
+    texels = np.rint(np.rint(steps * color) * 255.0 / steps).astype(np.uint8)
+    need("PIL.Image", "pillow").fromarray(texels).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()
 
 
@@ -61,8 +69,13 @@ def compare_backends(
     return [PictureDifference(float(image.max()), int((image > 1.0).sum())) for image in differences]
 
 
-def _scene(example: str) -> Scene:
-    return load(Path(place("examples"), example, "scene.toml"))
+def pictured(example: str) -> Scene:
+    """The scene of an example's picture."""
+    return _scene(example, PICTURED.get(example, "scene.toml"))
+
+
+def _scene(example: str, file: str = "scene.toml") -> Scene:
+    return load(Path(place("examples"), example, file))
 
 
 @functools.cache

@@ -27,8 +27,9 @@ def write_llms(folder: Path, texts: Mapping[str, str]) -> None:
 
 def _list(texts: Mapping[str, str]) -> str:
     readme = texts[README]
-    title, summary, about = readme.split("\n\n", 3)[:3]
-    lines = [title, "", f"> {summary.strip('*')}", "", " ".join(about.split()), ""]
+    title, summary, *rest = readme.split("\n\n")
+    about = next(part for part in rest if part.startswith("**"))
+    lines = [title, "", f"> {summary.strip('*')}", "", about.split("**")[1], ""]
     lines += ["- [All documents in one file](llms-full.txt)", ""]
     lines += ["## Commands", "", "Every command takes `--json`; the keys of its object are listed, `ok` first.", ""]
     reference = page_of("docs/reference/commands.md")

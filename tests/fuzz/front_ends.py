@@ -253,7 +253,7 @@ FRONT_ENDS = {
     "source": FrontEnd(".glsl", _source, _sources),
     "plain glsl": FrontEnd(".glsl", _plain, _plain_sources),
     "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
-    "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), lambda: _examples("*/scene*.toml")),
+    "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), lambda: _examples("*/scene.toml")),
     "measured scene": FrontEnd(".toml", lambda path: measured_scene.load(str(path)), lambda: _examples("lab/*.toml")),
     "ci table": FrontEnd(".eval.json", _ci, _tables),
     "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),

@@ -43,3 +43,10 @@ def test_material_of_half_the_light() -> None:
     assert results[0].level == pytest.approx((0.5, 0.5, 0.5), rel=1e-5)
     assert 0.3 < results[0].error < 0.5
     assert 0.0 < results[1].error < results[0].error
+
+
+def test_textures_are_those_of_the_view() -> None:
+    """A material names a picture for its colour; the view has none, and the technique's default is white."""
+    painted = MATTE._replace(values=(*MATTE.values, ("base_color_texture", "paint.png")))
+    (result,) = measure([painted], [[view(1.0)]])
+    assert result.error == pytest.approx(0.0, abs=1e-6)

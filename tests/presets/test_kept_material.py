@@ -172,6 +172,43 @@ def test_several_materials(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert "did you mean 'Skin'" in capsys.readouterr().err
 
 
+def test_two_materials_of_one_name_are_chosen_by_number(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    content, data = two_parts()
+    content["materials"][1]["name"] = "Skin"
+    write_gltf(Path("two.gltf"), content, data)
+    assert main(["use", "wax", "two.gltf", "--material", "Skin", "-o", "out"]) == 2 and not Path("out").exists()
+    error = capsys.readouterr().err
+    assert "2 materials are called 'Skin'" in error and "--material 0 or 1" in error
+    used("wax", "two.gltf", "--material", "1", capsys=capsys)
+    assert read("out/body.glb").vertices[:, 0].min() > 2.0 > read("out/rest.glb").vertices[:, 0].max() - 0.1
+
+
+def test_pictures_of_a_mesh_without_texture_coordinates_are_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    content, data = textured()
+    del content["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]
+    write_gltf(Path("head.glb"), content, data)
+    report = used("skin_fair", "head.glb", capsys=capsys)
+    rows = [row for row in report["report"]["rows"] if row["element"].endswith("Texture")]
+    assert {row["became"] for row in rows} == {"the mesh has no texture coordinates"}
+    assert not any(use.textures for use in stages("out", "skin_fair").values())
+
+
+def test_an_export_says_that_a_mesh_has_no_texture_coordinates(head: str, capsys: pytest.CaptureFixture[str]) -> None:
+    used("skin_fair", head, capsys=capsys)
+    content, data = textured()
+    del content["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]
+    write_gltf(Path("bare.glb"), content, data)
+    for mesh, is_bare in ((head, False), ("bare.glb", True)):
+        assert main(["export-gltf", "out/skin_fair.toml", "--mesh", mesh, "-o", "skin.glb"]) == 0
+        assert ("left out: texture coordinates: the mesh has none" in capsys.readouterr().out) == is_bare
+
+
 @pytest.mark.parametrize(
     ("extension", "hint"),
     [

@@ -138,6 +138,16 @@ def test_the_gallery_shows_every_example() -> None:
         assert re.search(rf"^\| `{name}` \|( 0\.\d{{3}} \|){{4}}$", page, re.MULTILINE), "a difference is 1/255 or more"
 
 
+def test_the_gallery_names_the_scene_of_each_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    from gallery_items import PICTURED
+
+    page = " ".join((ROOT / "docs" / "gallery.md").read_text(encoding="utf-8").split())
+    for name, file in PICTURED.items():
+        assert f"`sssgen render examples/{name}/{file} -o {name}.png`" in page
+        assert file != "scene.toml" and (ROOT / "examples" / name / file).is_file()
+
+
 def test_the_gallery_is_small() -> None:
     files = list((ROOT / "docs" / "gallery").iterdir())
     assert sum(file.stat().st_size for file in files) < 1_600_000
@@ -160,13 +170,17 @@ def test_the_light_goes_around() -> None:
 
 
 @pytest.mark.parametrize("name", example_cases())
-def test_the_gallery_is_current(name: str, backend: Callable[[str], Backend]) -> None:
+def test_the_gallery_is_current(name: str, backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
     """A small picture of the scene equals the scaled picture of the gallery."""
-    backend("gl")
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    from gallery_items import pictured
+
+    scene = dataclasses.replace(pictured(name), size=SMALL, samples=4)
+    drawn = render(scene, backend("gl")).encoded
     stored = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))
     small = stored.reshape(48, 10, 64, 10, 3).mean(axis=(1, 3))
     # the samples differ, so edges may differ, but not the mean
-    far = np.abs(images.encode_srgb(small) - render_example(name, "gl", 4).encoded)
+    far = np.abs(images.encode_srgb(small) - drawn)
     assert far.mean() < 0.006
 
 

@@ -18,6 +18,7 @@ from sssgen.scene.pictures import images
 from sssgen.scene.pictures.resizing import resized
 from sssgen.scene.scene_loading import load, parse_scene
 from sssgen.support.diagnostics import SssgenError
+from textured_head import textured
 
 WALL = {"name": "wall", "pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.8, 0.2, 1.0], "metallicFactor": 0.0}}
 RED = {"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.05, 0.05, 1.0], "metallicFactor": 0.0}}
@@ -75,6 +76,24 @@ def test_glass_shows_what_is_behind_it_in_its_colour(tmp_path: Path) -> None:
     assert through[1] > 0.15 * wall[1]  # and not opaque
     thick = drawn(scene_of(tmp_path, [(glass(0.3), *MIDDLE), (WALL, *BEHIND)])[1])[14:18, 14:18].mean((0, 1))
     assert thick[1] < 0.6 * through[1]  # a shorter attenuation distance is darker
+
+
+def test_warnings_of_a_file_are_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of pictures in a format that is not read, and of a mesh, which is written elsewhere for the picture."""
+    monkeypatch.chdir(tmp_path)
+    content, data = textured()
+    content["textures"][1] = {"extensions": {"KHR_texture_basisu": {"source": 0}}}
+    del content["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]
+    write_gltf(Path("head.glb"), content, data)
+    command = ["render", "head.glb", "-o", "head.png", "--size", "16x16", "--backend", "numpy-f32", "--json"]
+    assert main(command) == 0
+    warnings = json.loads(capsys.readouterr().out)["diagnostics"]
+    texts = [warning["message"] for warning in warnings]
+    assert any("left out: /materials/0/normalTexture" in text for text in texts), texts
+    assert any("the mesh has no texture coordinates" in text for text in texts), texts
+    assert {warning["file"] for warning in warnings} == {"head.glb"}
 
 
 def test_an_opaque_body_in_front_hides_the_glass_in_any_order(tmp_path: Path) -> None:

@@ -296,7 +296,7 @@ def test_faulty_meshes(tmp_path: Path) -> None:
     assert "no triangles" in wrong("text.stl", "hello")
     assert "cannot be read" in wrong("text.ply", "hello")
     assert "cannot be read" in wrong("text.glb", "hello")
-    assert "cannot be read" in wrong("index.obj", triangle + "f 1 2 9\n")
+    assert "refers to vertex 9" in wrong("index.obj", triangle + "f 1 2 9\n")
     assert "not a number" in wrong("nan.obj", triangle.replace("1", "nan", 1) + "f 1 2 3\n")
     assert "no triangle has an area" in wrong("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
 

@@ -75,3 +75,23 @@ def test_a_strip_without_sides_stays_as_it_is(tmp_path: Path) -> None:
     faces = np.r_[np.c_[low, high, next_high], np.c_[low, next_high, next_low]]
     strip = write(tmp_path / "strip.obj", np.r_[middle + 0.3 * across, middle - 0.3 * across], faces)
     assert strip.triangles.turned == 0 and not is_closed(strip)
+
+
+def test_a_mesh_that_is_inside_out_is_that_of_its_other_side(tmp_path: Path) -> None:
+    """It is turned with its normals, whether these face as its triangles do or outwards; an open mesh stays."""
+    ball = trimesh.creation.icosphere(2)
+    inverted = ball.copy()
+    inverted.invert()
+    for name, normals in (("along", inverted.vertex_normals), ("outwards", ball.vertex_normals)):
+        mesh = trimesh.Trimesh(inverted.vertices, inverted.faces, vertex_normals=normals, process=False)
+        path = tmp_path / f"{name}.glb"
+        mesh.export(path, include_normals=True)
+        triangles = Mesh(path=str(path)).triangles
+        middle = triangles.places[triangles.corners].mean(axis=1)
+        assert triangles.reversed and triangles.own_normals is not None
+        for directions in (triangles.flat, triangles.own_normals.mean(axis=1)):
+            assert (np.einsum("fc,fc->f", directions, middle) > 0.0).all()
+        assert (np.einsum("vc,vc->v", triangles.normals, triangles.places) > 0.0).all()
+    half = trimesh.Trimesh(inverted.vertices, inverted.faces[inverted.triangles_center[:, 2] > 0.0])
+    half.export(tmp_path / "half.stl")
+    assert not Mesh(path=str(tmp_path / "half.stl")).triangles.reversed

@@ -45,6 +45,27 @@ def test_holes_and_parts_inside_each_other_matter_for_light_inside_alone(tmp_pat
     assert "2 of the mesh's 3 parts are inside another" in warning
 
 
+@pytest.mark.parametrize(("place", "is_far"), [(100.0, False), (1e4, True)])
+def test_a_mesh_far_from_the_origin_is_coarse(place: float, is_far: bool, tmp_path: Path) -> None:
+    box = mesh(tmp_path / "box.obj", 1.0)
+    text = Path(box.path).read_text(encoding="utf-8")
+    lines = [
+        f"v {float(line.split()[1]) + place} {' '.join(line.split()[2:])}" if line.startswith("v ") else line
+        for line in text.splitlines()
+    ]
+    Path(box.path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    assert any("away from the origin" in text for text in mesh_warnings(Mesh(path=box.path), MeshNeeds())) == is_far
+
+
+def test_a_body_on_its_copy_is_one_body(tmp_path: Path) -> None:
+    single, double = mesh(tmp_path / "single.obj", 1.0), mesh(tmp_path / "double.obj", 1.0, 1.0)
+    assert double.triangles.repeated == len(FACES) and len(double.triangles.corners) == len(single.triangles.corners)
+    (warning,) = mesh_warnings(double, INSIDE)
+    assert "12 triangles are there twice: they are left out here" in warning
+    sheet = mesh(tmp_path / "sheet.obj", 1.0, faces=np.array([[0, 1, 3], [0, 3, 1]]))
+    assert sheet.triangles.repeated == 0, "both sides of a sheet stay"
+
+
 def test_parts_beside_each_other_suit(tmp_path: Path) -> None:
     both = mesh(tmp_path / "both.obj", 1.0, 0.5)
     text = Path(both.path).read_text(encoding="utf-8").splitlines()

@@ -12,7 +12,8 @@ def _mesh_facts(mesh: Mesh) -> MeshFacts:
     triangles = mesh.triangles
     return {
         "triangles": len(triangles.corners), **measures(triangles.places, triangles.corners),
-        "inside_out": mesh.inside_out, "turned": triangles.turned, "mixed_sides": mixed_sides(triangles.corners),
+        "inside_out": triangles.reversed or mesh.inside_out, "turned": triangles.turned,
+        "mixed_sides": mixed_sides(triangles.corners),
     }  # fmt: skip
 
 

@@ -101,6 +101,8 @@ def boundary(medium: MediumFacts) -> str:
 
 
 def _lines(scene: MeasuredScene, facts: FluenceFacts) -> list[str]:
+    from sssgen.scene.mesh import Mesh
+
     x, y, z = facts["texels"]
     lines = [
         f"{x} × {y} × {z} voxels; {facts['photons']} photons for each of {facts['directions']} "
@@ -108,7 +110,7 @@ def _lines(scene: MeasuredScene, facts: FluenceFacts) -> list[str]:
         f"for the technique {facts['technique']}: {boundary(facts['medium'])}",
         f"standard error of a voxel {facts['error']['standard_error']:.2g} of the mean, before it is averaged",
     ]
-    if getattr(scene.geometry, "inside_out", False):
+    if isinstance(body := scene.geometry, Mesh) and (body.triangles.reversed or body.inside_out):
         lines.append("the mesh is inside out: it was reversed")
     if facts["error"]["standard_error"] > NOISY:
         lines.append("warning: the noise is as large as the light: use more --photons, or a medium that scatters more")

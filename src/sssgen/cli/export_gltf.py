@@ -44,6 +44,13 @@ def run(arguments: Namespace) -> int:
     content = mesh_files.read(mesh) if mesh else None
     if content is not None:
         check_content(content, posix(mesh))
+    if (
+        content is not None
+        and content.uv is None
+        and (reading := [use.technique.name for use in material.stages if use.textures])
+    ):
+        reason = f"the mesh has none, and {', '.join(reading)} reads a picture: unwrap the mesh"
+        report.add_omission("texture coordinates", None, reason)
     files = export(material, content, path, report)
     written = write_files(os.path.dirname(path) or ".", files)
     paths = [posix(file.path) for file in written]

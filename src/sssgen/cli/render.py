@@ -6,13 +6,15 @@ import os
 import re
 import tempfile
 from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_output
 from sssgen.cli.output import CHECK_FAILED, OK, print_result, print_warnings, report_errors
+from sssgen.ir.spans import Span
 from sssgen.run.backend_registry import PREFERRED, SCENES
-from sssgen.support.diagnostics import failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import check_file
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
@@ -76,12 +78,16 @@ def _render(arguments: Namespace) -> int:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
     if arguments.SCENE.lower().endswith(_GLTF):
         with tempfile.TemporaryDirectory() as folder:
-            return _draw(arguments, load(_imported(arguments.SCENE, folder)), name, size)
+            try:
+                path, left_out = _imported(arguments.SCENE, folder)
+                return _draw(arguments, load(path), name, size, folder, left_out)
+            except SssgenError as error:
+                raise SssgenError(_at_source(error.diagnostics, folder, arguments.SCENE)) from None
     return _draw(arguments, scene_of(arguments.SCENE), name, size)
 
 
-def _imported(path: str, folder: str) -> str:
-    """The scene of a glTF file, written to a folder; a line says what became of its elements."""
+def _imported(path: str, folder: str) -> tuple[str, list[Diagnostic]]:
+    """The scene of a glTF file, written to a folder, and warnings of the pictures that are left out."""
     from sssgen.interchange import format_readers
     from sssgen.interchange.mapping_report import Report
     from sssgen.interchange.material_writer import WHOLE_SCENE, write_import
@@ -93,10 +99,28 @@ def _imported(path: str, folder: str) -> str:
         if not any(part.mesh is not None for part in materials):
             raise failure("the file has no triangles to draw", "sssgen import writes its materials", posix(path))
         write_import(folder, materials, report, format_readers.read_view(path, report), progress=bar)
-    return os.path.join(folder, WHOLE_SCENE)
+    left_out = [
+        Diagnostic("warning", f"left out: {row.element}: {row.became}", Span(posix(path), 0, 0, 0, 0))
+        for row in report.rows
+        if row.outcome == "left out" and row.element.endswith("Texture")
+    ]
+    return os.path.join(folder, WHOLE_SCENE), left_out
 
 
-def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] | None) -> int:
+def _at_source(diagnostics: Sequence[Diagnostic], folder: str, path: str) -> list[Diagnostic]:
+    """The diagnostics, where those of files that were written to `folder` are of the file that they were made of."""
+    place = Span(posix(path), 0, 0, 0, 0)
+    return [
+        part._replace(span=place, source_line="") if folder and part.span.file.startswith(posix(folder)) else part
+        for part in diagnostics
+    ]
+
+
+def _draw(
+    arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] | None, folder: str = "",
+    left_out: Sequence[Diagnostic] = (),
+) -> int:  # fmt: skip
+    """Draws a scene; it is in `folder` where it was made of another file, of which `left_out` warns."""
     from sssgen.run import backends
     from sssgen.run.render.missing_textures import MissingTextures
     from sssgen.run.render.scene_render import render, with_samples
@@ -113,10 +137,11 @@ def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] |
         with ProgressBar() as progress:
             picture = render(scene, backend, size, arguments.time, arguments.guards, progress)
     except MissingTextures as error:
-        report_errors(error.diagnostics, arguments.json)
+        report_errors(_at_source(error.diagnostics, folder, arguments.SCENE), arguments.json)
         return CHECK_FAILED
     seconds = perf_counter() - start
-    print_warnings(picture.warnings)
+    warnings = [*left_out, *_at_source(picture.warnings, folder, arguments.SCENE)]
+    print_warnings(warnings)
     write = {
         ".png": lambda: images.write_png(output, picture.encoded),
         ".exr": lambda: images.write_exr(output, picture.linear),
@@ -125,7 +150,7 @@ def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] |
     height, width = picture.linear.shape[:2]
     facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
     text = f"wrote {output}: {width} × {height} on {backend.name} ({backend.device()}) in {seconds:.2f} s"
-    diagnostics = [warning.as_json() for warning in picture.warnings]
+    diagnostics = [warning.as_json() for warning in warnings]
     print_result(arguments.json, {**facts, "seconds": round(seconds, 3), "diagnostics": diagnostics}, text)
     return OK
 

@@ -33,6 +33,7 @@ _WHITE = (1.0, 1.0, 1.0)
 _DARKEST = 1e-3
 """The mean of a picture that is darker counts as this."""
 OWN = "the preset has its own"
+_NO_COORDINATES = "the mesh has no texture coordinates"
 
 
 class GltfPart(NamedTuple):
@@ -60,11 +61,15 @@ def read_part(path: str, material: str, report: Report) -> GltfPart:
     or that no triangle has.
     """
     imports = gltf_reader.read(path, report, material)
+    names = [element.text("name") for element in open_file(path).root.objects("materials")]
+    if names.count(material) > 1:
+        numbers = [str(number) for number, name in enumerate(names) if name == material]
+        hint = f"choose one by its number: --material {' or '.join(numbers)}"
+        raise failure(f"{len(numbers)} materials are called '{material}'", hint, posix(path))
     drawn = [part for part in imports if part.mesh is not None]
     if material and not drawn:
         raise failure(f"no triangle has the material '{material}'", "choose another with --material", posix(path))
     if material:
-        names = [element.text("name") for element in open_file(path).root.objects("materials")]
         chosen = _placed(drawn[0], [name for name in names if name != drawn[0].model.name])
         return chosen._replace(rest=without_material(path, material))
     if not drawn:
@@ -78,19 +83,19 @@ def read_part(path: str, material: str, report: Report) -> GltfPart:
 
 def _placed(imported: ImportedMaterial, others: Sequence[str]) -> GltfPart:
     """A material with the texture coordinates that most of its pictures have as the first ones of its mesh; pictures
-    with others are left out."""
+    with others are left out, as are all where the mesh has none."""
     mesh, model = imported.mesh, imported.model
     assert mesh is not None
     images = {field: image for field in _FIELDS if (image := getattr(model, field).image) is not None}
     counted = Counter(coordinates(image) for image in images.values())
     place = counted.most_common(1)[0][0] if counted else Coordinates()
+    uv = (mesh.uv, mesh.uv2)[place.uv_set]
     changed = {}
     for field, image in images.items():
         quantity = getattr(model, field)
-        fits = coordinates(image) == place
+        fits = coordinates(image) == place and uv is not None
         moved = image._replace(uv_set=0, transform=Coordinates().transform) if fits else None
         changed[field] = quantity._replace(image=moved)
-    uv = (mesh.uv, mesh.uv2)[place.uv_set]
     uv = None if uv is None else _transformed(uv, place)
     kept = imported._replace(model=replace(model, **changed))
     return GltfPart(mesh._replace(uv=uv, uv2=None, color=None), kept, others)
@@ -143,7 +148,8 @@ def report_kept(part: GltfPart, keeps_color: bool, report: Report) -> None:
                 continue
             is_picture = path.endswith("Texture")
             if is_picture and field in _FIELDS and getattr(model, field).image is None:
-                report.add_omission(path, value, "its texture coordinates are not those of the other pictures")
+                reason = "its texture coordinates are not those of the other pictures"
+                report.add_omission(path, value, reason if part.mesh.uv is not None else _NO_COORDINATES)
             elif field in kept:
                 report.add_mapping(path, value, field.replace("_", " "))
             elif is_picture and field == "roughness":

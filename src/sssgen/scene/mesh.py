@@ -14,7 +14,7 @@ from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.mesh_distance import MeshDistance, is_inside_out, rim_length
 from sssgen.scene.mesh_rays import MeshRays
-from sssgen.scene.mesh_repair import flipped, welded
+from sssgen.scene.mesh_repair import flipped, has_inside, repeated, welded
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -51,6 +51,10 @@ class Triangles(NamedTuple):
     """(f, 3, 3): those of the file, unit; 0 where it has none; or None"""
     turned: int = 0
     """How many triangles were turned, so that neighbours face the same way"""
+    repeated: int = 0
+    """How many triangles were left out, as they are equal to others"""
+    reversed: bool = False
+    """Whether all triangles were turned, as the closed mesh of the file is inside out"""
 
     def corner_normals(self, face: npt.NDArray[Any]) -> Array:
         """The normals at the corners of triangles, (n, 3, 3): those of the file, or else smooth ones."""
@@ -132,7 +136,7 @@ class Mesh(Geometry):
 
     @cached_property
     def inside_out(self) -> bool:
-        """Whether most of the triangles' normals point inwards (by volume)."""
+        """Whether most normals of an open mesh point inwards (by volume); a closed one is turned as it is read."""
         return is_inside_out(self.triangles.places, self.triangles.corners)
 
     @cached_property
@@ -177,17 +181,24 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     if not area.any():
         raise failure("no triangle has an area", "", shown)
     valid = area > 0.0
+    copies = valid.copy()
+    copies[valid] = repeated(corners[valid])
+    valid &= ~copies
     faces, corners, across = faces[valid], corners[valid], across[valid]
     if (turned := flipped(corners, area[valid])).any():
         faces, corners = (np.where(turned[:, None], rows[:, ::-1], rows) for rows in (faces, corners))
         across = np.where(turned[:, None], -across, across)
+    own = None if own_normals is None else unit(own_normals)
+    if inside_out := has_inside(corners) and is_inside_out(places, corners):
+        faces, corners, across = faces[:, ::-1], np.ascontiguousarray(corners[:, ::-1]), -across
+        if own is not None and np.einsum("fkc,fc->", own[faces], across) < 0.0:  # they face as the triangles did
+            own = -own
     sums = [np.bincount(corners.ravel(), np.repeat(across[:, axis], 3), len(places)) for axis in range(3)]
     normals: Array = np.stack(sums, axis=1).astype(np.float64)
-    own = None if own_normals is None else unit(own_normals)
     uv2, color, own_normals = (None if values is None else values[faces] for values in (uv2, color, own))
     mesh = Triangles(
         places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), uv2, color, own_normals,
-        int(turned.sum()),
+        int(turned.sum()), int(copies.sum()), inside_out,
     )  # fmt: skip
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
 

@@ -13,6 +13,7 @@ import numpy as np
 from sssgen.ir.spans import Span
 from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.obj_lines import faulty_line, is_doubtful
+from sssgen.scene.obj_polygons import without_concave
 from sssgen.scene.pictures.images import decode_srgb
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
@@ -47,7 +48,7 @@ def check_suffix(path: str) -> None:
     """Raises SssgenError for a path without the suffix of a mesh file."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
-        hint = did_you_mean(suffix, SUFFIXES) or f"meshes end in {', '.join(SUFFIXES)}"
+        hint = did_you_mean(suffix, SUFFIXES) or f"export the mesh as one that ends in {', '.join(SUFFIXES)}"
         raise failure(f"'{suffix}' is not a mesh file's suffix", hint, posix(path))
 
 
@@ -85,7 +86,9 @@ def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = ""
             _refuse_compressed(data, kind, shown)
             # texture coordinates are loaded with the materials
             return _join(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
-        loaded = trimesh.load_mesh(io.BytesIO(data), file_type=kind[1:], process=False, skip_materials=True)
+        # the reader of .obj knows spaces alone, and makes fans of polygons
+        read = without_concave(data.replace(b"\t", b" ")) if kind == ".obj" else data
+        loaded = trimesh.load_mesh(io.BytesIO(read), file_type=kind[1:], process=False, skip_materials=True)
         uv, color = getattr(loaded.visual, "uv", None), _colors(loaded)
         if kind == ".obj" and is_doubtful(data, uv is not None):
             _refuse_faulty_line(data, shown)

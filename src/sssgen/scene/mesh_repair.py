@@ -1,4 +1,5 @@
-"""What a mesh gets before it is used: vertices that differ by rounding become one, and flipped triangles are turned."""
+"""What a mesh gets before it is used: vertices that differ by rounding become one, copies of triangles are left out,
+and flipped triangles are turned."""
 
 from __future__ import annotations
 
@@ -43,6 +44,17 @@ def has_inside(faces: Indices) -> bool:
     forward = edges[:, 0] * count + edges[:, 1]
     backward = edges[:, 1] * count + edges[:, 0]
     return np.array_equal(np.sort(forward), np.sort(backward))
+
+
+def repeated(corners: Indices) -> npt.NDArray[np.bool_]:
+    """The triangles (f,) that an earlier one is equal to: a body that lies on its own copy is one body."""
+    start = corners.argmin(axis=1)
+    turned = np.stack([np.take_along_axis(corners, (start + step)[:, None] % 3, 1)[:, 0] for step in range(3)], axis=1)
+    order = np.lexsort(turned.T)  # a stable sort
+    same = (np.diff(turned[order], axis=0) == 0).all(axis=1)
+    result = np.zeros(len(corners), np.bool_)
+    result[order[1:]] = same
+    return result
 
 
 def flipped(corners: Indices, areas: Array) -> npt.NDArray[np.bool_]:

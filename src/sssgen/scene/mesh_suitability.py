@@ -28,6 +28,8 @@ FEW_PATHS = 1.0
 """The mean chord in mean free paths below which light passes a body almost without scattering."""
 MANY_PATHS = 300.0
 """The same above which a body looks opaque; presets have 4 to 58 in the sizes that they assume."""
+FAR_AWAY = 1e3
+"""The distance from the origin, relative to the mesh's longest side, at which float32 has four digits of its shape"""
 BELOW = 1e-4
 """How deep below the surface a point is inside, relative to the mesh's longest side."""
 MOST_SHELLS = 64
@@ -51,7 +53,7 @@ class MeshNeeds(NamedTuple):
 def mesh_warnings(mesh: Mesh, needs: MeshNeeds) -> list[str]:
     """Warnings for people, the gravest first. Raises SssgenError for a mesh that cannot be read."""
     places, corners = mesh.triangles.places, mesh.triangles.corners
-    messages = _mended(mesh, needs)
+    messages = _mended(mesh, needs) + _far_away(places)
     shells = _shells(corners) if needs.inside else []
     if shells and all(is_sheet(places, shell) for shell in shells[:MOST_SHELLS]):
         messages.append(f"the mesh encloses no volume, and light inside needs a body: {_SHEETS}")
@@ -71,9 +73,23 @@ def _mended(mesh: Mesh, needs: MeshNeeds) -> list[str]:
     place = f"here and in {needs.written}" if needs.written else "here; do so in the file for engines"
     turned = mesh.triangles.turned
     messages = [f"{turned_text(turned)}: turned {place}"] if turned else []
-    if mesh.inside_out and (needs.inside or mesh.closed):  # of a sheet there is no inside
+    if copies := mesh.triangles.repeated:
+        times = "1 triangle is there twice: it is" if copies == 1 else f"{copies} triangles are there twice: they are"
+        messages.append(f"{times} left out {place}")
+    if mesh.triangles.reversed or (mesh.inside_out and needs.inside):  # of a sheet there is no inside
         messages.append(f"the mesh is inside out: all its triangles are turned {place}")
     return messages
+
+
+def _far_away(places: Array) -> list[str]:
+    """The warning for a mesh at places whose float32 numbers are coarse for its size."""
+    away = float(np.abs(places).max() / np.ptp(places, axis=0).max())
+    if away < FAR_AWAY:
+        return []
+    return [
+        f"the mesh is {away:.3g} times its size away from the origin, where the numbers of engines are coarse: move it "
+        "to the origin"
+    ]
 
 
 def _holes(corners: npt.NDArray[np.int64]) -> list[str]:

@@ -32,7 +32,12 @@ def measure(stages: Sequence[MaterialSection], cases: Sequence[Sequence[View]]) 
     All light that leaves the body is compared, but not what the surface reflects towards the eye. The engine's Lambert
     light has the albedo of the material.
     """
-    constant = [stage._replace(fixed=tuple(key for key, _ in stage.values)) for stage in stages]
+    # textures are those of the views
+    numbers = [tuple(pair for pair in stage.values if not isinstance(pair[1], str)) for stage in stages]
+    constant = [
+        stage._replace(values=own, fixed=tuple(key for key, _ in own))
+        for stage, own in zip(stages, numbers, strict=True)
+    ]
     with tempfile.TemporaryDirectory() as folder:
         chain = Chain(material_of(constant, folder))
     operations = static_cost(chain).weight
