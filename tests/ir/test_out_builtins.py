@@ -153,9 +153,9 @@ def test_reads_that_compare(name: str, backend: Callable[[str], Backend]) -> Non
     for builtin, place, result in (
         ("textureProj", VEC4, FLOAT), ("shadow2DProj", VEC4, VEC4), ("shadow2D", VEC3, VEC4),
     ):  # fmt: skip
-        texts.append(
-            f"{out_builtin(builtin, [shadow, place]) or ''}{spell(result)} of_{builtin}(sampler2DShadow s, {spell(place)} P) {{ return {builtin}(s, P); }}\n"
-        )
+        source = out_builtin(builtin, [shadow, place]) or ""
+        head = f"{spell(result)} of_{builtin}(sampler2DShadow s, {spell(place)} P)"
+        texts.append(f"{source}{head} {{ return {builtin}(s, P); }}\n")
         coord = np.ones((place.size, 12), np.float32)
         coord[:2] = np.array([[3.5 / 16.0], [2.5 / 8.0]])  # the middle of a texel
         coord[2] = np.where(np.arange(12) % 2, depths[2, 3] - 1.0 / 512.0, depths[2, 3] + 1.0 / 512.0)

@@ -1,8 +1,8 @@
 """Reads of integer textures at coordinates, which GLSL has and WGSL, HLSL and TSL lack: fetches of the nearest texel.
 
-The level is 0, or the one that is given: these textures hardly ever have others. Outside of the texture its texels
-repeat, as those of OpenGL do unless its sampler has another mode. A cube has no fetch, so that only GLSL reads cubes of
-integers.
+The level is 0, which OpenGL reads, too, where the filter is `NEAREST`: other levels are read by `texelFetch`. Outside of
+the texture its texels repeat, as those of OpenGL do unless its sampler has another mode. A cube has no fetch, so that
+only GLSL reads cubes of integers.
 """
 
 from __future__ import annotations
@@ -72,16 +72,19 @@ def integer_reads(name: str) -> IntegerReads:
 
 
 def _polyfill(name: str, kind: str, parameters: list[str], texture: _Texture) -> str:
-    level = "int(round(level))" if "float level" in parameters else "0"
     layered = texture.sampler == "sampler2DArray"
     place, size = ("P.xy", "size.xy") if layered else ("P", "size")
-    texel = f"min({texture.offset}(fract({place}) * {texture.along}({size})), {size} - 1)"
+    sizes = f"{texture.along}({size})"
+    within = f"fract({place})"
     if any(parameter.endswith("offset") for parameter in parameters):
-        texel = f"({texel} + offset + 8 * {size}) % {size}"  # an offset is not below -8
+        # from the middle of a texel, so that rounding leads to no other one; fract of a tiny negative number is 1
+        texel = f"min(floor(fract({place}) * {sizes}), {sizes} - 1.0)"
+        within = f"fract(({texel} + {texture.along}(offset) + 0.5) / {sizes})"
+    texel = f"min({texture.offset}({within} * {sizes}), {size} - 1)"
     if layered:
         texel = f"ivec3({texel}, clamp(int(round(P.z)), 0, size.z - 1))"
     return f"""{kind}vec4 {name}({", ".join(parameters)}) {{
-    {"ivec3" if layered else texture.offset} size = textureSize(map, {level});
-    return texelFetch(map, {texel}, {level});
+    {"ivec3" if layered else texture.offset} size = textureSize(map, 0);
+    return texelFetch(map, {texel}, 0);
 }}
 """

@@ -41,21 +41,8 @@ def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
 
 
 def _is_whole(texture: Texture) -> bool:
-    """Whether its texels are integers, which have no filter."""
+    """Whether its texels are integers, which have no filter: `ir.intrinsics.integer_reads`."""
     return texture.levels[0].dtype.kind in "iu"
-
-
-def _nearest(texture: Texture, coord: Value, level: Value, offset: Value = ()) -> Value:
-    """The nearest texel of a texture of integers, which repeats: `ir.intrinsics.integer_reads`. It is no cube."""
-    level = np.int32(np.round(np.ravel(level)[0]))
-    places = []
-    for axis, (part, size) in enumerate(zip(coord, textureSize(texture, level), strict=True)):
-        if axis < texture.axes:
-            place = np.minimum(((part - np.floor(part)) * size).astype(np.int32), size - 1)
-            places.append((place + offset[axis]) % size if len(offset) else place)
-        else:
-            places.append(np.clip(np.round(part), 0, size - 1).astype(np.int32))
-    return texelFetch(texture, np.array(np.broadcast_arrays(*places)), level)
 
 
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
@@ -64,7 +51,7 @@ def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
     if texture.compare:
         return textureCompare(texture, coord[:-1], coord[-1])
     if _is_whole(texture):
-        return _nearest(texture, coord, 0)
+        return texture.nearest(coord)
     return texture.sample(coord, _by_derivatives(texture, coord, bias))
 
 
@@ -73,7 +60,7 @@ def textureOffset(texture: Texture, coord: Value, offset: Value, bias: Value = 0
     if texture.compare:
         return textureCompareOffset(texture, coord[:-1], coord[-1], offset)
     if _is_whole(texture):
-        return _nearest(texture, coord, 0, offset)
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, _by_derivatives(texture, coord, bias), _first(offset))
 
 
@@ -81,7 +68,7 @@ def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
     if _is_whole(texture):
-        return _nearest(texture, coord, level)
+        return texture.nearest(coord)
     return texture.sample(coord, level)
 
 
@@ -90,7 +77,7 @@ def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
     if _is_whole(texture):
-        return _nearest(texture, coord, level, offset)
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, level, _first(offset))
 
 
@@ -98,7 +85,7 @@ def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
     if _is_whole(texture):
-        return _nearest(texture, coord, 0)
+        return texture.nearest(coord)
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy))
 
 
@@ -107,7 +94,7 @@ def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offs
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
     if _is_whole(texture):
-        return _nearest(texture, coord, 0, offset)
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy), _first(offset))
 
 
