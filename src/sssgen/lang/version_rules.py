@@ -50,9 +50,9 @@ ES_BUILTINS = frozenset(
     abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf
     floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16
     unpackUnorm2x16 packHalf2x16 unpackHalf2x16 length distance dot cross normalize faceforward reflect refract
-    matrixCompMult outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any
-    all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset textureProjOffset
-    textureLodOffset textureProjLod textureProjLodOffset textureGrad textureGradOffset textureProjGrad
+    matrixCompMult outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual
+    equal notEqual any all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset
+    textureProjOffset textureLodOffset textureProjLod textureProjLodOffset textureGrad textureGradOffset textureProjGrad
     textureProjGradOffset dFdx dFdy fwidth
     """.split()  # noqa: SIM905
 )

@@ -32,7 +32,7 @@ _TEXTURES = (
     _Texture("sampler2DArray", "vec3", "vec2", "ivec2"),
     _Texture("samplerCube", "vec3", "vec3", ""),
 )
-_READS = {
+READS = {
     "texture": ("", "float bias"),
     "textureLod": ("float level",),
     "textureGrad": ("{along} dx, {along} dy",),
@@ -58,7 +58,7 @@ def integer_reads(name: str) -> IntegerReads:
     polyfills: list[str] = []
     for kind in KINDS:
         for texture in _TEXTURES:
-            for form in _READS[name]:
+            for form in READS[name]:
                 if "offset" in form and not texture.offset:
                     continue
                 parameters = [f"{kind}{texture.sampler} map", f"{texture.place} P"]
