@@ -216,6 +216,6 @@ def _number(text: str) -> float:
 
 def _unindented(text: str) -> str:
     """Without the empty line at the start: `#version` has to be the first line."""
-    lines = text.strip("\n").split("\n")
+    lines = text.replace("\\\\", "\\").strip("\n").split("\n")  # a backslash is written twice
     depth = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
     return "\n".join(line[depth:] for line in lines).strip() + "\n"

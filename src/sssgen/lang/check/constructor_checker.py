@@ -46,7 +46,7 @@ class ConstructorChecker:
             if call.args and any(isinstance(length, s.Unsized) for length in lengths[1:]):  # float[][](…): as its parts
                 first, _ = self.expressions.with_prelude(call.args[0], self.expressions.check)
                 element, lengths = first.expr.type, lengths[:1]
-            type_ = array_type(self.context, element, lengths, len(call.args))
+            type_ = array_type(self.context, element, lengths, [len(call.args)])
             assert isinstance(type_, Array)
             return self.construct_parts(type_, call)
         type_, quantity = named_type(self.context, callee)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.signatures import candidates
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Struct, Type, kind_of
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
@@ -184,10 +184,11 @@ class ExpressionChecker:
         lengths = (*declarator.lengths, *type_.lengths)
         if not lengths:
             return element
-        items = _item_count(declarator.value)
-        if items is None and declarator.value is not None and isinstance(lengths[0], s.Unsized):
+        items = _item_counts(declarator.value)
+        unsized = [index for index, length in enumerate(lengths) if isinstance(length, s.Unsized)]
+        if declarator.value is not None and unsized and unsized[-1] >= len(items):
             value, _ = self.with_prelude(declarator.value, self.check)
-            items = value.expr.type.length if isinstance(value.expr.type, Array) else None
+            items = unnested(value.expr.type)[1]
         return array_type(self.context, element, lengths, items)
 
     def number(self, number: s.Number) -> Typed:
@@ -245,10 +246,11 @@ class ExpressionChecker:
         raise self.context.fail(listed.span, "{…} is allowed only as the value of a declaration")
 
 
-def _item_count(value: s.Expression | None) -> int | None:
-    """How many items an array has according to the syntax of its value, as in `float a[] = float[](1.0, 2.0)`."""
+def _item_counts(value: s.Expression | None) -> Sequence[int]:
+    """How many items an array and its first items have according to the syntax of its value, as far as it says so: one
+    number for `float a[] = float[](1.0, 2.0)`."""
     if isinstance(value, s.Listed):
-        return len(value.items)
+        return [len(value.items), *_item_counts(value.items[0] if value.items else None)]
     if isinstance(value, s.CallOf) and isinstance(value.callee, s.TypeName) and value.callee.lengths:
-        return len(value.args)
-    return None
+        return [len(value.args)]
+    return []

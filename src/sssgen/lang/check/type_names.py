@@ -40,10 +40,12 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
     return type_, quantity
 
 
-def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Expression], items: int | None = None) -> Type:
+def array_type(
+    context: CheckContext, element: Type, lengths: Sequence[s.Expression], items: Sequence[int] = ()
+) -> Type:
     """`element` itself without a length, else an array of these constant lengths, the outermost first.
 
-    `items` is the length of `[]`.
+    `items` are the lengths of `[]`, for each of the lengths.
     """
     if not lengths:
         return element
@@ -54,8 +56,9 @@ def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Express
         raise context.fail(lengths[0].span, message)
     total = math.prod(unnested(element)[1])
     for index, length in reversed([*enumerate(lengths)]):
-        first = items if index == 0 else None
-        count = first if isinstance(length, s.Unsized) else constant_int(context, length)
+        count = constant_int(context, length) if not isinstance(length, s.Unsized) else None
+        if isinstance(length, s.Unsized) and index < len(items):
+            count = items[index]
         total *= count or 0
         if count is None or count < 1 or total > 65536:
             raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
