@@ -53,7 +53,10 @@ class SuiteFormatError(Exception):
 
 def read(path: Path, group: str) -> Iterator[Case]:
     """The cases of a file, whose names begin with `group`. Raises SuiteFormatError."""
-    yield from _Reader(path.read_text("utf-8"), str(path)).cases([group])
+    reader = _Reader(path.read_text("utf-8"), str(path))
+    yield from reader.cases([group])
+    if reader.next[0]:
+        raise SuiteFormatError(f"{path}: {reader.next[1][:40]!r} is no group and no case")
 
 
 class _Facts(NamedTuple):

@@ -32,7 +32,8 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
     lines = [
         "# Outside suites", "",
         "Shader suites that nobody of this project wrote, run on every back end: "
-        f"`make suites SUITES=FOLDER`, which is `python -m qualification.suites FOLDER{every_text} --write`, of {date}. "
+        f"`make suites SUITES=FOLDER`, which is `python -m qualification.suites FOLDER{every_text} --write`, "
+        f"of {date}. "
         "Nothing of a suite is in this repository.", "",
         "| suite | repository | folders | commit | license |", "|---|---|---|---|---|",
         *(
@@ -44,9 +45,9 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         "", "FOLDER has each repository under its own name, at that commit.", "",
         "## Results", "", table(results), "",
         *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
-        "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs are "
-        "compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only has to "
-        "build is translated with both of its stages.", "",
+        "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs "
+        "are compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only "
+        "has to build is translated with both of its stages.", "",
         "## What is accepted and should not be", "",
         "| class | cases | why |", "|---|---:|---|",
         *lenience_rows(result for own in results.values() for result in own), "",
