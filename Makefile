@@ -7,6 +7,7 @@
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores 110 minutes: docs/accuracy.md and docs/accuracy/*.md
 # make site   a first page with a live demo, the documents and the playground, static: build/site/index.html
+# make suites SUITES=FOLDER  shader suites of others, which the folder has: docs/suites.md
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
@@ -39,7 +40,7 @@ export PYTHONUTF8 := 1
 # Without stored bytecode, each of the hundreds of processes that the tests start would compile all of sssgen.
 unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery heroes stability engines site vscode dist clean
+.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery heroes stability suites engines site vscode dist clean
 
 setup: .venv/done build/node/done build/preview/library.js
 
@@ -119,6 +120,10 @@ heroes: setup
 stability: setup
 	$(BIN)/python -m qualification.pages.stability
 	$(BIN)/python -m qualification.pages.safety
+
+SUITES ?= ../suites
+suites: setup
+	$(BIN)/python -m qualification.suites $(SUITES) --write
 
 bake: setup
 	$(BIN)/python docs/bake.py

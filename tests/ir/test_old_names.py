@@ -6,8 +6,9 @@ import pytest
 
 from sssgen.ir.old_names import OLD_NAMES, new_name
 from sssgen.ir.out_builtins import is_out_builtin, out_builtin
+from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.signatures import overloads
-from sssgen.ir.types import FLOAT, INT, VEC2, VEC3, VEC4, Sampler, Type, Vector
+from sssgen.ir.types import FLOAT, INT, VEC2, VEC3, VEC4, Sampler, Type, Vector, vector_of
 
 IVEC2, IVEC3 = Vector("int", 2), Vector("int", 3)
 PLACES: dict[str, tuple[Type, Type, Type]] = {
@@ -35,7 +36,12 @@ def test_an_old_name_means_a_function_with_these_arguments(old: str) -> None:
         assert new_name(old, count) == new
         types = arguments(old, new, count)
         assert len(types) == count
-        known = out_builtin(new, types) is not None if is_out_builtin(new) else tuple(types) in overloads(new)
+        name = PROJECTIVE_READS.get(new, new)
+        if name != new:
+            kept = kept_components(types[0], types[1])
+            assert kept is not None
+            types[1] = vector_of("float", kept)
+        known = out_builtin(name, types) is not None if is_out_builtin(name) else tuple(types) in overloads(name)
         assert known, (old, new, types)
         assert old not in (new, *overloads(old))
 

@@ -29,6 +29,7 @@ LONG = {
     "conditions nested more than": "#if 1\n" * 10_000,
     "macros nest more than": "\n".join(f"#define A{n}(x) A{n + 1}(x)" for n in range(500)) + "\nA0(1)\n",
     "this macro expands to more than": "\n".join(f"#define A{n} A{n + 1} A{n + 1}" for n in range(60)) + "\nA0\n",
+    "a name has at most": f"float {'x' * 1025};\n",
     "'##' makes a token of more than": "#define J(a, b) a ## b\n#define D(a) J(a, a)\nD(" + "x" * 100_000 + ")\n",
 }
 """The errors of texts that are too long for the file of cases."""

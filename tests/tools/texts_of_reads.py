@@ -63,6 +63,21 @@ READS = {
         "dx9": "error: Unity, built-in pipeline (surface shader) has no samplerCubeShadow",
         "urp": "error: Unity, Universal Render Pipeline has no samplerCubeShadow",
     },
+    # only GLSL has a bias there
+    "texture(shade, x3, y)": {
+        "glsl": "texture(shade, x3, y)",
+        "hlsl": "shade.SampleCmp(shade_sampler, x3.xy, x3.z)",
+        "wgsl": "textureSampleCompare(shade, shade_sampler, x3.xy, x3.z)",
+        "dx9": "error: Unity, built-in pipeline (surface shader) has no sampler2DShadow",
+        "urp": "error: Unity, Universal Render Pipeline has no sampler2DShadow",
+    },
+    "texture(shadecube, x4, y)": {
+        "glsl": "texture(shadecube, x4, y)",
+        "hlsl": "shadecube.SampleCmp(shadecube_sampler, x4.xyz, x4.w)",
+        "wgsl": "textureSampleCompare(shadecube, shadecube_sampler, x4.xyz, x4.w)",
+        "dx9": "error: Unity, built-in pipeline (surface shader) has no samplerCubeShadow",
+        "urp": "error: Unity, Universal Render Pipeline has no samplerCubeShadow",
+    },
     "texture(shades, x4)": {
         "glsl": "texture(shades, x4)",
         "hlsl": "shades.SampleCmp(shades_sampler, float3(x4.xy, float(int(round(x4.z)))), x4.w)",

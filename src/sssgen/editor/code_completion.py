@@ -14,6 +14,7 @@ from sssgen.ir.frame_passes import FRAME_PASSES
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Declare
 from sssgen.ir.out_builtins import OUT_BUILTINS
+from sssgen.ir.projective_reads import PROJECTIVE_READS
 from sssgen.ir.types import spell
 from sssgen.ir.walk import statements
 from sssgen.lang.check.quantities import QUANTITIES, SCALARS
@@ -57,7 +58,7 @@ def code_items(document: Document, analysis: Analysis, line: int, column: int) -
         Item(row.name, "function", row.signatures[0].replace("(", f" {row.name}(", 1), row.doc, rank=1)
         for row in BUILTINS.values()
     ]
-    items += items_of(OUT_BUILTINS, "function", rank=1)
+    items += items_of((*OUT_BUILTINS, *PROJECTIVE_READS), "function", rank=1)
     if technique:
         items.append(Item("assume", "keyword", "states a fact: assume(x > 0.0);", text="assume()", rank=2))
     return items + items_of(KEYWORDS, "keyword", rank=2)

@@ -1,14 +1,14 @@
-"""Builtins that are written as functions of the language: with out parameters, projective reads, or of old GLSL.
+"""Builtins that are written as functions of the language: with out parameters, or of old GLSL.
 
 A builtin of the intrinsic table returns one value and has no out parameters. The front end adds one of these functions
-to the module at the file's first call, and every pass and target treats it like the file's own functions. Projective
-reads divide the coordinate first; the shadow reads of old GLSL returned a vec4.
+to the module at the file's first call, and every pass and target treats it like the file's own functions. The shadow
+reads of old GLSL returned a vec4.
 
     out_builtin("modf", [VEC3, VEC3])    # the text of vec3 modf(vec3 x, out vec3 whole)
 
 The texts are generic as the table's signatures are (`genF`: float, vec2, vec3, vec4 alike). What GLSL leaves undefined:
 the results of `modf` and `frexp` for infinity and NaN. `frexp` treats a subnormal number as 0, as GPUs do.
-Source: chapters 8.3, 8.8 and 8.9 of the GLSL 4.60 specification, and 8.7 of GLSL 1.20.
+Source: chapters 8.3 and 8.8 of the GLSL 4.60 specification, and 8.7 of GLSL 1.20.
 """
 
 from __future__ import annotations
@@ -71,25 +71,6 @@ void imulExtended(genI x, genI y, out genI msb, out genI lsb) {
     msb = genI(high) - ((x >> 31u) & y) - ((y >> 31u) & x);
     lsb = x * y;
 }
-""",
-    "textureProj": """
-vec4 textureProj(sampler2D map, vec3 P) { return texture(map, P.xy / P.z); }
-vec4 textureProj(sampler2D map, vec4 P) { return texture(map, P.xy / P.w); }
-vec4 textureProj(sampler3D map, vec4 P) { return texture(map, P.xyz / P.w); }
-vec4 textureProj(sampler2D map, vec3 P, float bias) { return texture(map, P.xy / P.z, bias); }
-vec4 textureProj(sampler2D map, vec4 P, float bias) { return texture(map, P.xy / P.w, bias); }
-vec4 textureProj(sampler3D map, vec4 P, float bias) { return texture(map, P.xyz / P.w, bias); }
-float textureProj(sampler2DShadow map, vec4 P) { return texture(map, P.xyz / P.w); }
-""",
-    "textureProjLod": """
-vec4 textureProjLod(sampler2D map, vec3 P, float level) { return textureLod(map, P.xy / P.z, level); }
-vec4 textureProjLod(sampler2D map, vec4 P, float level) { return textureLod(map, P.xy / P.w, level); }
-vec4 textureProjLod(sampler3D map, vec4 P, float level) { return textureLod(map, P.xyz / P.w, level); }
-""",
-    "textureProjGrad": """
-vec4 textureProjGrad(sampler2D map, vec3 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.z, dx, dy); }
-vec4 textureProjGrad(sampler2D map, vec4 P, vec2 dx, vec2 dy) { return textureGrad(map, P.xy / P.w, dx, dy); }
-vec4 textureProjGrad(sampler3D map, vec4 P, vec3 dx, vec3 dy) { return textureGrad(map, P.xyz / P.w, dx, dy); }
 """,
     # the result as a grey, as in GLSL 1.20
     "shadow2D": """

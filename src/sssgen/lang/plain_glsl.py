@@ -17,6 +17,7 @@ from sssgen.lang.source_lines import keep_lines
 from sssgen.lang.syntax.doc_comments import words_of
 from sssgen.lang.syntax.parser import parse_tokens
 from sssgen.lang.syntax.tokens import Comment, Token
+from sssgen.lang.version_rules import check_version
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
 from sssgen.support.gc_pause import pause_gc
 from sssgen.support.text_files import read_code
@@ -103,12 +104,15 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     keep_lines(texts)
     reporter = Reporter(label, text, texts)
     reporter.macros = source.expanded
+    check_version(source.tokens, source.version, source.profile, reporter)
     head, rest, is_generated = _head(source, label)
     comments = source.comments | {label: rest} if is_generated else source.comments
     file = parse_tokens(tokens, comments, reporter, plain=True)
     if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
         head = []  # it documents a declaration
-    module = check_plain(file, reporter, _is_vertex(tokens, label))
+    es = source.version if source.profile == "es" else 0
+    converts = any("implicit_conversions" in extension for extension in source.extensions)
+    module = check_plain(file, reporter, _is_vertex(tokens, label), es, converts)
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 

@@ -10,13 +10,14 @@ from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.old_names import OLD_NAMES
 from sssgen.ir.out_builtins import OUT_BUILTINS
+from sssgen.ir.projective_reads import PROJECTIVE_READS
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets import registry
 
 
 def names() -> Collection[str]:
     """The builtin functions, with their names in old versions of GLSL."""
-    return (*BUILTINS, *OUT_BUILTINS, *OLD_NAMES)
+    return (*BUILTINS, *OUT_BUILTINS, *PROJECTIVE_READS, *OLD_NAMES)
 
 
 def describe(name: str) -> dict[str, Any]:
@@ -24,12 +25,15 @@ def describe(name: str) -> dict[str, Any]:
     if name not in names():
         raise failure(f"unknown builtin '{name}'", did_you_mean(name, names()) or "see: sssgen list builtins")
     new = OLD_NAMES[name][0] if name in OLD_NAMES else name
+    if new in PROJECTIVE_READS:
+        divided = f"As {PROJECTIVE_READS[new]}, at the coordinate divided by its last component."
+        return {"name": name, "new_name": new, **_of_row(BUILTINS[PROJECTIVE_READS[new]]), "summary": divided}
     facts = _of_function(new) if new in OUT_BUILTINS else _of_row(BUILTINS[new])
     return {"name": name, "new_name": new, **facts}
 
 
 def _of_function(name: str) -> dict[str, Any]:
-    """A builtin that is written as a function wherever it is called: it has out parameters, or reads projectively."""
+    """A builtin that is written as a function wherever it is called: it has out parameters."""
     text = OUT_BUILTINS[name].strip()
     heads = re.findall(rf"^(\w+ {name}\([^)]*\))", text, re.MULTILINE)
     return {"summary": "", "signatures": heads, "languages": {}, "polyfill": text, "guards": []}

@@ -11,10 +11,6 @@ in vec2 v_uv;
 in vec3 v_normal;
 out vec4 FragColor;
 
-vec4 textureProj_(sampler2D map, vec3 P) {
-    return texture(map, P.xy / P.z);
-}
-
 float grain(vec2 p) {
     return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453);
 }
@@ -23,7 +19,8 @@ void main() {
     vec3 n = normalize(v_normal);
     vec4 base = texture(u_map, v_uv) * u_tint;
     base += textureLod(u_map, v_uv, 2.0) * 0.25;
-    base += texture(u_map, v_uv * 2.0, 1.0) + textureProj_(u_map, vec3(v_uv, 2.0));
+    vec3 place = vec3(v_uv, 2.0);
+    base += texture(u_map, v_uv * 2.0, 1.0) + texture(u_map, place.xy / place.z);
     vec3 sky = texture(u_sky, reflect(vec3(0.0, 0.0, -1.0), n)).rgb;
     float lines = length(dFdx(v_uv)) + grain(v_uv);
     FragColor = vec4(base.rgb * sky, base.a);

@@ -14,10 +14,6 @@ static float2 v_uv;
 static float3 v_normal;
 static float4 FragColor;
 
-float4 textureProj(Texture2D map, SamplerState map_sampler, float3 P) {
-    return map.Sample(map_sampler, P.xy / P.z);
-}
-
 float grain(float2 p) {
     return frac(sin(dot(p, float2(12.9898, 78.233))) * 43758.5453);
 }
@@ -26,8 +22,9 @@ void main_() {
     float3 n = normalize(v_normal);
     float4 base = u_map.Sample(u_map_sampler, v_uv) * u_tint;
     base += u_map.SampleLevel(u_map_sampler, v_uv, 2.0) * 0.25;
+    float3 place = float3(v_uv, 2.0);
     base += u_map.SampleBias(u_map_sampler, v_uv * 2.0, 1.0)
-        + textureProj(u_map, u_map_sampler, float3(v_uv, 2.0));
+        + u_map.Sample(u_map_sampler, place.xy / place.z);
     float3 sky = u_sky.Sample(u_sky_sampler, reflect(float3(0.0, 0.0, -1.0), n)).rgb;
     float lines = length(ddx(v_uv)) + grain(v_uv);
     FragColor = float4(base.rgb * sky, base.a);

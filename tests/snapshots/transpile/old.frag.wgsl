@@ -15,10 +15,6 @@ var<private> v_uv: vec2f;
 var<private> v_normal: vec3f;
 var<private> FragColor: vec4f;
 
-fn textureProj(map: texture_2d<f32>, map_sampler: sampler, P: vec3f) -> vec4f {
-    return textureSample(map, map_sampler, P.xy / P.z);
-}
-
 fn grain(p: vec2f) -> f32 {
     return fract(sin(dot(p, vec2f(12.9898, 78.233))) * 43758.5453);
 }
@@ -27,8 +23,9 @@ fn main_() {
     let n = normalize(v_normal);
     var base = textureSample(u_map, u_map_sampler, v_uv) * material.u_tint;
     base += textureSampleLevel(u_map, u_map_sampler, v_uv, 2.0) * 0.25;
+    let place = vec3f(v_uv, 2.0);
     base += textureSampleBias(u_map, u_map_sampler, v_uv * 2.0, 1.0)
-        + textureProj(u_map, u_map_sampler, vec3f(v_uv, 2.0));
+        + textureSample(u_map, u_map_sampler, place.xy / place.z);
     let sky = textureSample(u_sky, u_sky_sampler, reflect(vec3f(0.0, 0.0, -1.0), n)).rgb;
     let lines = length(dpdx(v_uv)) + grain(v_uv);
     FragColor = vec4f(base.rgb * sky, base.a);

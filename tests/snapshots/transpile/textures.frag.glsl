@@ -19,14 +19,6 @@ vec4 textureGatherOffset_(sampler2D map, vec2 P, ivec2 offset) {
         textureLod(map, vec2(high.x, low.y), 0.0).r, textureLod(map, low, 0.0).r);
 }
 
-vec4 textureProj_(sampler2D map, vec3 P) {
-    return texture(map, P.xy / P.z);
-}
-
-vec4 textureProj_(sampler2D map, vec4 P) {
-    return texture(map, P.xy / P.w);
-}
-
 vec4 from(sampler2D source, vec2 uv) {
     return texture(source, uv);
 }
@@ -50,7 +42,9 @@ void main() {
     sum += texture(layers, vec3(uv, 1.0));
     sum += textureLod(map, uv, 1.0) + textureLod(sky, place, 2.0) + textureGrad(map, uv, dx, dy);
     sum += textureOffset(map, uv, ivec2(1, -1)) + textureLodOffset(map, uv, 0.0, ivec2(0, 2));
-    sum += textureProj_(map, vec3(uv, 2.0)) + textureProj_(map, vec4(uv, 0.0, 2.0));
+    vec3 place_ = vec3(uv, 2.0);
+    vec4 place_2 = vec4(uv, 0.0, 2.0);
+    sum += texture(map, place_.xy / place_.z) + texture(map, place_2.xy / place_2.w);
     sum += texelFetch(map, ivec2(gl_FragCoord.xy), 0) + texelFetchOffset(map, ivec2(uv), 0, ivec2(1));
     sum += vec4(texelFetch(numbers, ivec2(3, 4), 0)) + textureGatherOffset_(map, uv, ivec2(0));
     sum.xy += vec2(textureSize(sky, 0)) + vec2(textureSize(fog, 1).xy);

@@ -16,14 +16,6 @@ static float3 place;
 static float4 color;
 static float4 FragCoord;
 
-float4 textureProj(Texture2D map, SamplerState map_sampler, float3 P) {
-    return map.Sample(map_sampler, P.xy / P.z);
-}
-
-float4 textureProj(Texture2D map, SamplerState map_sampler, float4 P) {
-    return map.Sample(map_sampler, P.xy / P.w);
-}
-
 float4 from(Texture2D source, SamplerState source_sampler, float2 uv) {
     return source.Sample(source_sampler, uv);
 }
@@ -70,8 +62,9 @@ void main_() {
     sum += map.SampleLevel(map_sampler, uv, 1.0) + sky.SampleLevel(sky_sampler, place, 2.0)
         + map.SampleGrad(map_sampler, uv, dx, dy);
     sum += map.Sample(map_sampler, uv, int2(1, -1)) + map.SampleLevel(map_sampler, uv, 0.0, int2(0, 2));
-    sum += textureProj(map, map_sampler, float3(uv, 2.0))
-        + textureProj(map, map_sampler, float4(uv, 0.0, 2.0));
+    float3 place_ = float3(uv, 2.0);
+    float4 place_2 = float4(uv, 0.0, 2.0);
+    sum += map.Sample(map_sampler, place_.xy / place_.z) + map.Sample(map_sampler, place_2.xy / place_2.w);
     sum += map.Load(int3((int2)FragCoord.xy, 0)) + map.Load(int3((int2)uv + (int2)1, 0));
     sum += (float4)numbers.Load(int3(int2(3, 4), 0)) + map.GatherRed(map_sampler, uv);
     sum.xy += (float2)texture_size(sky, 0) + (float2)texture_size(fog, 1).xy;

@@ -20,14 +20,6 @@ fn texture(map: texture_2d_array<f32>, map_sampler: sampler, P: vec3f) -> vec4f 
     return textureSample(map, map_sampler, P.xy, i32(round(P.z)));
 }
 
-fn textureProj_sampler2D_vec3(map: texture_2d<f32>, map_sampler: sampler, P: vec3f) -> vec4f {
-    return textureSample(map, map_sampler, P.xy / P.z);
-}
-
-fn textureProj_sampler2D_vec4(map: texture_2d<f32>, map_sampler: sampler, P: vec4f) -> vec4f {
-    return textureSample(map, map_sampler, P.xy / P.w);
-}
-
 fn from_(source: texture_2d<f32>, source_sampler: sampler, uv: vec2f) -> vec4f {
     return textureSample(source, source_sampler, uv);
 }
@@ -55,8 +47,10 @@ fn main_() {
         + textureSampleGrad(map, map_sampler, uv, dx, dy);
     sum += textureSample(map, map_sampler, uv, vec2i(1, -1))
         + textureSampleLevel(map, map_sampler, uv, 0.0, vec2i(0, 2));
-    sum += textureProj_sampler2D_vec3(map, map_sampler, vec3f(uv, 2.0))
-        + textureProj_sampler2D_vec4(map, map_sampler, vec4f(uv, 0.0, 2.0));
+    let place_ = vec3f(uv, 2.0);
+    let place_2 = vec4f(uv, 0.0, 2.0);
+    sum += textureSample(map, map_sampler, place_.xy / place_.z)
+        + textureSample(map, map_sampler, place_2.xy / place_2.w);
     sum += textureLoad(map, vec2i(FragCoord.xy), 0) + textureLoad(map, vec2i(uv) + vec2i(1), 0);
     sum += vec4f(textureLoad(numbers, vec2i(3, 4), 0)) + textureGather(0, map, map_sampler, uv);
     let sum_xy = sum.xy

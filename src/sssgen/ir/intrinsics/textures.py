@@ -4,7 +4,7 @@ The coordinate of a texture with layers ends with the layer, that of a comparing
 WGSL need some of these as separate arguments. Builtins of the project have them so, `…Layer…` and `…Compare…`
 (`texture_parts.py`); the polyfills use these.
 
-Integer texels are only fetched, as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a statement; its
+Integer texels are fetched (`integer_reads.py`), as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a statement; its
 printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
 """
 
@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from sssgen.ir import vector_ranges
+from sssgen.ir.intrinsics.integer_reads import integer_reads
 from sssgen.ir.intrinsics.table import Builtin, ConstantArgument, Level, Samples
 from sssgen.ir.vector_ranges import all_within, any_numbers, texels
 
@@ -20,10 +21,14 @@ _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, ve
 _LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")
 _FLAT = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(sampler2DArray, vec3")
 _SHADOWS = ("sampler2DShadow,vec3", "samplerCubeShadow,vec4", "sampler2DArrayShadow,vec4")
+_BIASED_SHADOWS = ("sampler2DShadow,vec3,float", "samplerCubeShadow,vec4,float")
 _SHADOW_GRADIENTS = (
     "sampler2DShadow,vec3,vec2,vec2", "samplerCubeShadow,vec4,vec3,vec3", "sampler2DArrayShadow,vec4,vec2,vec2",
 )  # fmt: skip
-_SHADOW_OFFSETS = ("float(sampler2DShadow, vec3, ivec2)", "float(sampler2DArrayShadow, vec4, ivec2)")
+_SHADOW_OFFSETS = (
+    "float(sampler2DShadow, vec3, ivec2)", "float(sampler2DShadow, vec3, ivec2, float)",
+    "float(sampler2DArrayShadow, vec4, ivec2)",
+)  # fmt: skip
 _SHADOW_GRADIENT_OFFSETS = (
     "float(sampler2DShadow, vec3, vec2, vec2, ivec2)", "float(sampler2DArrayShadow, vec4, vec2, vec2, ivec2)",
 )  # fmt: skip
@@ -155,21 +160,23 @@ ROWS = (
     Builtin("texture",
         (
             *(f"{read})" for read in (*_SAMPLE, *_LAYERS)), *(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)),
-            *(f"float({shadow.replace(',', ', ')})" for shadow in _SHADOWS),
+            *(f"float({shadow.replace(',', ', ')})" for shadow in (*_SHADOWS, *_BIASED_SHADOWS)),
+            *integer_reads("texture").signatures,
         ),
         "Filtered texture read; the level comes from screen-space derivatives, with z added to it. Of a texture that "
-        "compares: the part of the texels that are not below the reference.",
+        "compares: the part of the texels that are not below the reference; only GLSL adds z to its level.",
         with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
         uniform_flow=True,
         texts={
+            **integer_reads("texture").texts,
             "wgsl-metal": "{texture}.sample({sampler}, {1})",
             **{f"wgsl-metal/{params(read)},float": "{texture}.sample({sampler}, {1}, metal::bias({2}))" for read in _SAMPLE},
             **{f"wgsl-metal/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
-            **{f"wgsl-metal/{shadow}": "" for shadow in _SHADOWS},
+            **{f"wgsl-metal/{shadow}": "" for shadow in (*_SHADOWS, *_BIASED_SHADOWS)},
             "tsl": "{texture}.sample({1})",
             **{f"tsl/{params(read)},float": "{texture}.sample({1}).bias({2})" for read in _SAMPLE},
             **{f"tsl/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
-            **{f"tsl/{shadow}": "" for shadow in _SHADOWS},
+            **{f"tsl/{shadow}": "" for shadow in (*_SHADOWS, *_BIASED_SHADOWS)},
             "hlsl": "{texture}.Sample({sampler}, {1})",
             **{f"hlsl/{params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
             "hlsl-dx9": "tex{dim}({texture}, {1})",
@@ -184,7 +191,7 @@ ROWS = (
             "wgsl": "textureSample({texture}, {sampler}, {1})",
             **{f"wgsl/{params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2})" for read in _SAMPLE},
             **{f"wgsl/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
-            **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOWS},
+            **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in (*_SHADOWS, *_BIASED_SHADOWS)},
         },
         polyfill="""
 vec4 texture(sampler2DArray map, vec3 P) { return textureLayer(map, P.xy, int(round(P.z))); }
@@ -193,14 +200,21 @@ vec4 texture(sampler2DArray map, vec3 P, float bias) { return textureLayer(map, 
 vec4 texture(samplerCubeArray map, vec4 P, float bias) { return textureLayer(map, P.xyz, int(round(P.w)), bias); }
 float texture(sampler2DShadow map, vec3 P) { return textureCompare(map, P.xy, P.z); }
 float texture(samplerCubeShadow map, vec4 P) { return textureCompare(map, P.xyz, P.w); }
+float texture(sampler2DShadow map, vec3 P, float bias) { return textureCompare(map, P.xy, P.z); }
+float texture(samplerCubeShadow map, vec4 P, float bias) { return textureCompare(map, P.xyz, P.w); }
 float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.xy, int(round(P.z)), P.w); }
-""",
+""" + integer_reads("texture").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
-    Builtin("textureLod", (*(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)), "float(sampler2DShadow, vec3, float)"),
+    Builtin("textureLod",
+        (
+            *(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)), "float(sampler2DShadow, vec3, float)",
+            *integer_reads("textureLod").signatures,
+        ),
         "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
         componentwise=False, range=texels, domain="z = 0 for a texture that compares",
         texts={
+            **integer_reads("textureLod").texts,
             "wgsl-metal": "{texture}.sample({sampler}, {1}, metal::level({2}))", "wgsl-metal/sampler2DShadow,vec3,float": "",
             **{f"wgsl-metal/{params(read)},float": "" for read in _LAYERS},
             "tsl": "{texture}.sample({1}).level({2})", "tsl/sampler2DShadow,vec3,float": "",
@@ -217,7 +231,7 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
 vec4 textureLod(sampler2DArray map, vec3 P, float level) { return textureLayerLod(map, P.xy, int(round(P.z)), level); }
 vec4 textureLod(samplerCubeArray map, vec4 P, float level) { return textureLayerLod(map, P.xyz, int(round(P.w)), level); }
 float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompareLod(map, P.xy, P.z); }
-""",
+""" + integer_reads("textureLod").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureGrad",
@@ -225,12 +239,13 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
             "vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:]),
             "vec4(sampler2DArray, vec3, vec2, vec2)", "vec4(samplerCubeArray, vec4, vec3, vec3)",
             "float(sampler2DShadow, vec3, vec2, vec2)", "float(samplerCubeShadow, vec4, vec3, vec3)",
-            "float(sampler2DArrayShadow, vec4, vec2, vec2)",
+            "float(sampler2DArrayShadow, vec4, vec2, vec2)", *integer_reads("textureGrad").signatures,
         ),
         "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y. HLSL and "
         "WGSL compare at level 0 only.",
         componentwise=False, range=texels,
         texts={
+            **integer_reads("textureGrad").texts,
             "wgsl-metal": "",
             "wgsl-metal/sampler2D,vec2,vec2,vec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}))",
             "wgsl-metal/sampler3D,vec3,vec3,vec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}))",
@@ -251,15 +266,20 @@ vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textur
 float textureGrad(sampler2DShadow map, vec3 P, vec2 dx, vec2 dy) { return textureCompareLod(map, P.xy, P.z); }
 float textureGrad(samplerCubeShadow map, vec4 P, vec3 dx, vec3 dy) { return textureCompareLod(map, P.xyz, P.w); }
 float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return textureCompareLod(map, P.xy, int(round(P.z)), P.w); }
-""",
+""" + integer_reads("textureGrad").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     # Filtered reads with an offset in texels
-    Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets()), *_SHADOW_OFFSETS),
+    Builtin("textureOffset",
+        (
+            *_offsets(), *(f"{one[:-1]}, float)" for one in _offsets()), *_SHADOW_OFFSETS,
+            *integer_reads("textureOffset").signatures,
+        ),
         "As texture, with z added to the place in texels, and w to the level.",
         with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
         componentwise=False, range=texels, constant=(offset_at(2),), uniform_flow=True,
         texts={
+            **integer_reads("textureOffset").texts,
             "wgsl-metal": "",
             **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, {2})" for one in _offsets()[:2]},
             **{f"wgsl-metal/{params(one)[:-1]},float": "{texture}.sample({sampler}, {1}, metal::bias({3}), {2})" for one in _offsets()[:2]},
@@ -280,14 +300,19 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
 vec4 textureOffset(sampler2DArray map, vec3 P, ivec2 offset) { return textureLayerOffset(map, P.xy, int(round(P.z)), offset); }
 vec4 textureOffset(sampler2DArray map, vec3 P, ivec2 offset, float bias) { return textureLayerOffset(map, P.xy, int(round(P.z)), offset, bias); }
 float textureOffset(sampler2DShadow map, vec3 P, ivec2 offset) { return textureCompareOffset(map, P.xy, P.z, offset); }
+float textureOffset(sampler2DShadow map, vec3 P, ivec2 offset, float bias) { return textureCompareOffset(map, P.xy, P.z, offset); }
 float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return textureCompareOffset(map, P.xy, int(round(P.z)), P.w, offset); }
-""",
+""" + integer_reads("textureOffset").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
-    Builtin("textureLodOffset", (*_offsets(", float"), "float(sampler2DShadow, vec3, float, ivec2)"),
+    Builtin("textureLodOffset",
+        (
+            *_offsets(", float"), "float(sampler2DShadow, vec3, float, ivec2)", *integer_reads("textureLodOffset").signatures,
+        ),
         "As textureLod, with w added to the place in texels.",
         componentwise=False, range=texels, constant=(offset_at(3),), domain="z = 0 for a texture that compares",
         texts={
+            **integer_reads("textureLodOffset").texts,
             "wgsl-metal": "",
             **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, metal::level({2}), {3})" for one in _offsets(", float")[:2]},
             "tsl": "{texture}.sample({1}).level({2}).offset({3})", "tsl/sampler2DArray,vec3,float,ivec2": "",
@@ -299,17 +324,19 @@ float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return tex
         polyfill="""
 vec4 textureLodOffset(sampler2DArray map, vec3 P, float level, ivec2 offset) { return textureLayerLodOffset(map, P.xy, int(round(P.z)), level, offset); }
 float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) { return textureCompareLodOffset(map, P.xy, P.z, offset); }
-""",
+""" + integer_reads("textureLodOffset").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureGradOffset",
         (
             "vec4(sampler2D, vec2, vec2, vec2, ivec2)", "vec4(sampler3D, vec3, vec3, vec3, ivec3)",
             "vec4(sampler2DArray, vec3, vec2, vec2, ivec2)", *_SHADOW_GRADIENT_OFFSETS,
+            *integer_reads("textureGradOffset").signatures,
         ),
         "As textureGrad, with the last argument added to the place in texels.",
         componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
+            **integer_reads("textureGradOffset").texts,
             "wgsl-metal": "",
             "wgsl-metal/sampler2D,vec2,vec2,vec2,ivec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}), {4})",
             "wgsl-metal/sampler3D,vec3,vec3,vec3,ivec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}), {4})",
@@ -323,7 +350,7 @@ float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) {
 vec4 textureGradOffset(sampler2DArray map, vec3 P, vec2 dx, vec2 dy, ivec2 offset) { return textureLayerGradOffset(map, P.xy, int(round(P.z)), dx, dy, offset); }
 float textureGradOffset(sampler2DShadow map, vec3 P, vec2 dx, vec2 dy, ivec2 offset) { return textureCompareLodOffset(map, P.xy, P.z, offset); }
 float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec2 offset) { return textureCompareLodOffset(map, P.xy, int(round(P.z)), P.w, offset); }
-""",
+""" + integer_reads("textureGradOffset").polyfill,
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     # Texels

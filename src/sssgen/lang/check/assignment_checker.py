@@ -91,7 +91,7 @@ class AssignmentChecker:
         target = target._replace(expr=self.fixed_place(target.expr, right.expr, start))
         start += len(context.function.prelude) - before
         value = right.expr
-        if context.plain and op not in ("<<", ">>") and operator_type(op, type_, value.type) != type_:
+        if context.converts and op not in ("<<", ">>") and operator_type(op, type_, value.type) != type_:
             value = as_kind(value, kind_of(type_)) if converts(value.type, type_, whole=False) else value
         if operator_type(op, type_, value.type) != type_:
             message = f"'{op}=' is not defined for {a_type(type_)} and {a_type(right.expr.type)}"

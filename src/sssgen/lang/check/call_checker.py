@@ -9,9 +9,10 @@ from sssgen.ir import old_names, out_builtins
 from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
+from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import candidates, resolve
-from sssgen.ir.types import INT, Sampler, Type, kind_of, spell
+from sssgen.ir.types import FLOAT, INT, Sampler, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.assignment_checker import check_writable
@@ -100,6 +101,8 @@ class CallChecker:
         if renamed is not None and candidates(renamed):
             return self.call_intrinsic(renamed, args, call)
         name = renamed or name
+        if name in PROJECTIVE_READS:
+            return self.projective_read(name, args, call)
         types = [arg.expr.type for arg in args]
         source = out_builtins.out_builtin(name, types)
         if source is None and out_builtins.is_out_builtin(name):
@@ -110,6 +113,21 @@ class CallChecker:
             return None
         self.add_function(name, source)
         return self.call_function(name, self.overload(name, args, call), args, call)
+
+    def projective_read(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
+        """A read at a coordinate that is divided by its last component."""
+        types = [arg.expr.type for arg in args]
+        kept = kept_components(types[0], types[1]) if len(types) > 1 else None
+        if kept is None:
+            raise self.context.fail(call.span, f"no overload of {name} takes ({', '.join(map(spell, types))})")
+        texture, place, *rest = args
+        span, value = place.expr.span, place.expr
+        if not isinstance(value, ir.Local | ir.Global | ir.Uniform):
+            value = self.context.function.temporary("place", value)
+        whole = ir.Swizzle(vector_of("float", kept), value, "xyz"[:kept], span)
+        last = ir.Swizzle(FLOAT, value, "xyzw"[components(value.type) - 1], span)
+        divided = place._replace(expr=ir.Binary(whole.type, "/", whole, last, span))
+        return self.call_intrinsic(PROJECTIVE_READS[name], [texture, divided, *rest], call)
 
     def method(self, callee: s.MemberOf, call: s.CallOf) -> Typed:
         """`values.length()`, the only method."""
@@ -136,7 +154,7 @@ class CallChecker:
                 message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {len(args)}"
                 raise self.context.fail(call.span, message, f"it is declared as {signature_text(name, only)}")
             return only
-        if self.context.plain:
+        if self.context.converts:
             viable = [signature for signature in overloads if _is_viable(signature, types)]
             if viable:
                 return min(viable, key=lambda signature: _conversion_cost(signature, types))
@@ -173,7 +191,7 @@ class CallChecker:
         """A call of a builtin."""
         values = tuple([arg.expr for arg in args])
         result = resolve(name, [value.type for value in values])
-        if result is None and self.context.plain:
+        if result is None and self.context.converts:
             for converted in _conversions(values):
                 result = resolve(name, [value.type for value in converted])
                 if result is not None:

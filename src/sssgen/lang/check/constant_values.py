@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_evaluation import Value, combine
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import INT, UINT
-from sssgen.ir.walk import operands
+from sssgen.ir.walk import operands, subexpressions
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
 
@@ -43,6 +44,21 @@ def constant_value(context: CheckContext, expr: ir.Expr) -> Value | None:
             return None
         values.append(value)
     return combine(expr, values) if values else None
+
+
+def is_constant(context: CheckContext, expr: ir.Expr) -> bool:
+    """Whether an expression is known before the shader runs, also where its value is not computed here."""
+    return all(_is_constant(context, part) for part in subexpressions(expr))
+
+
+def _is_constant(context: CheckContext, part: ir.Expr) -> bool:
+    if isinstance(part, ir.Intrinsic):
+        return not BUILTINS[part.name].reads_neighbours_or_textures
+    if isinstance(part, ir.Local):
+        return not context.function.scopes.visible[part.name].writable
+    if isinstance(part, ir.Global):
+        return context.globals[part.name].constant
+    return not isinstance(part, ir.Call)
 
 
 def integer_value(text: str) -> int | None:

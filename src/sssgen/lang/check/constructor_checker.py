@@ -46,7 +46,7 @@ class ConstructorChecker:
             if call.args and any(isinstance(length, s.Unsized) for length in lengths[1:]):  # float[][](…): as its parts
                 first, _ = self.expressions.with_prelude(call.args[0], self.expressions.check)
                 element, lengths = first.expr.type, lengths[:1]
-            type_ = array_type(self.context, element, lengths, len(call.args))
+            type_ = array_type(self.context, element, lengths, [len(call.args)])
             assert isinstance(type_, Array)
             return self.construct_parts(type_, call)
         type_, quantity = named_type(self.context, callee)
@@ -55,7 +55,7 @@ class ConstructorChecker:
     def construct_parts(self, type_: Array | Struct, call: s.CallOf) -> Typed:
         """The constructor of an array or a struct, with its arguments converted where GLSL does so."""
         args = self.expressions.operands(call.args)
-        if self.context.plain:
+        if self.context.converts:
             for index, (arg, part) in enumerate(zip(args, _part_types(type_), strict=False)):
                 if converts(arg.expr.type, part):
                     args[index] = arg._replace(expr=as_kind(arg.expr, kind_of(part)))

@@ -67,12 +67,15 @@ class CheckContext:
     """The declarations of one file so far, and the function that is being checked.
 
     `plain`: the file is GLSL, where an int converts to a float and loops need no visible bound. Otherwise it is a
-    technique.
+    technique. `es` is the version of GLSL ES that the file names, or 0; `converts`: numbers convert implicitly, as in
+    desktop GLSL.
     """
 
-    def __init__(self, reporter: Reporter, plain: bool = False) -> None:
+    def __init__(self, reporter: Reporter, plain: bool = False, es: int = 0, converts: bool = False) -> None:
         self.reporter = reporter
         self.plain = plain
+        self.es = es
+        self.converts = plain and (converts or not es)
         self.file_scope = FunctionContext()
         self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]

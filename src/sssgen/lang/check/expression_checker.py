@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.signatures import candidates
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Struct, Type, kind_of
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
@@ -27,6 +27,7 @@ from sssgen.lang.check.type_names import array_type
 from sssgen.lang.check.wording import a_type, type_hint
 from sssgen.lang.syntax import tree as s
 
+_S = TypeVar("_S")
 _T = TypeVar("_T")
 
 
@@ -68,7 +69,7 @@ class ExpressionChecker:
         """The expression as a value of this type, converted where GLSL does so; reports where it does not fit."""
         expr = typed.expr
         if expr.type != type_:
-            if not self.context.plain or not converts(expr.type, type_):
+            if not self.context.converts or not converts(expr.type, type_):
                 message = f"{what} must be {a_type(type_)}, but this is {a_type(expr.type)}"
                 raise self.context.fail(span, message, type_hint(expr, type_))
             expr = as_kind(expr, kind_of(type_))
@@ -169,7 +170,7 @@ class ExpressionChecker:
             return target._replace(index=self.context.function.temporary("place", target.index, start))
         return target
 
-    def with_prelude(self, expression: s.Expression, check: Callable[[s.Expression], _T]) -> tuple[_T, list[ir.Stmt]]:
+    def with_prelude(self, expression: _S, check: Callable[[_S], _T]) -> tuple[_T, list[ir.Stmt]]:
         """The result of `check` for an expression, and the prelude of this expression alone."""
         function = self.context.function
         outer, function.prelude = function.prelude, []
@@ -183,10 +184,11 @@ class ExpressionChecker:
         lengths = (*declarator.lengths, *type_.lengths)
         if not lengths:
             return element
-        items = _item_count(declarator.value)
-        if items is None and declarator.value is not None and isinstance(lengths[0], s.Unsized):
+        items = _item_counts(declarator.value)
+        unsized = [index for index, length in enumerate(lengths) if isinstance(length, s.Unsized)]
+        if declarator.value is not None and unsized and unsized[-1] >= len(items):
             value, _ = self.with_prelude(declarator.value, self.check)
-            items = value.expr.type.length if isinstance(value.expr.type, Array) else None
+            items = unnested(value.expr.type)[1]
         return array_type(self.context, element, lengths, items)
 
     def number(self, number: s.Number) -> Typed:
@@ -244,10 +246,11 @@ class ExpressionChecker:
         raise self.context.fail(listed.span, "{…} is allowed only as the value of a declaration")
 
 
-def _item_count(value: s.Expression | None) -> int | None:
-    """How many items an array has according to the syntax of its value, as in `float a[] = float[](1.0, 2.0)`."""
+def _item_counts(value: s.Expression | None) -> Sequence[int]:
+    """How many items an array and its first items have according to the syntax of its value, as far as it says so: one
+    number for `float a[] = float[](1.0, 2.0)`."""
     if isinstance(value, s.Listed):
-        return len(value.items)
+        return [len(value.items), *_item_counts(value.items[0] if value.items else None)]
     if isinstance(value, s.CallOf) and isinstance(value.callee, s.TypeName) and value.callee.lengths:
-        return len(value.args)
-    return None
+        return [len(value.args)]
+    return []

@@ -13,6 +13,7 @@ from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
+from sssgen.lang.version_rules import ES_BUILTINS
 
 
 class FunctionChecker:
@@ -39,6 +40,11 @@ class FunctionChecker:
         context.function = FunctionContext(result, quantity)
         params = tuple([self.parameter(index, param) for index, param in enumerate(function.params)])
         declaration = ir.Function(name.text, params, result, quantity, None, function.doc, name.span)
+        if context.plain and name.text == "main" and (params or result != VOID):
+            raise context.fail(name.span, "main takes nothing and returns nothing", "write void main()")
+        if context.es >= 300 and name.text in ES_BUILTINS and not name.span.file.startswith("intrinsics/"):
+            hint = "give it another name: from version 3.00 on GLSL ES does not allow this"
+            raise context.fail(name.span, f"'{name.text}' is a builtin function", hint)
         self.declare(declaration, function.body is not None)
         if function.body is None:
             return declaration

@@ -6,10 +6,8 @@ from dataclasses import replace
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
-from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
-from sssgen.ir.walk import subexpressions
-from sssgen.lang.check.constant_values import constant_value
+from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.declared_names import check_global_name, declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.memory_checker import MemoryChecker
@@ -52,6 +50,8 @@ class GlobalChecker:
             raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)
+        if "invariant" in keywords and ("uniform" in keywords or "const" in keywords):
+            raise context.fail(declaration.qualifiers.span, "only what stages pass can be invariant")
         if "uniform" in keywords:
             for declarator in declaration.declarators:
                 elements = self.interface.textures(declaration, declarator)
@@ -114,19 +114,11 @@ class GlobalChecker:
             value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check_as(value, type_, quantity, f"'{name.text}'")
             )
-        if prelude or not all(self.is_constant(part) for part in subexpressions(value)):
+        if prelude or not is_constant(context, value):
             message = f"the value of const '{name.text}' is not constant"
             raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")
         context.globals[name.text] = GlobalValue(type_, quantity, constant_value(context, value), True)
         self.constants.append(ir.Constant(name.text, type_, value, name.span))
-
-    def is_constant(self, part: ir.Expr) -> bool:
-        """Whether a part of an expression is known before the shader runs."""
-        if isinstance(part, ir.Intrinsic):
-            return not BUILTINS[part.name].reads_neighbours_or_textures
-        return not isinstance(part, ir.Call) and (
-            not isinstance(part, ir.Global) or self.context.globals[part.name].constant
-        )
 
 
 def _components(value: ir.Expr) -> tuple[float, ...] | None:

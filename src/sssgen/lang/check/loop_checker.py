@@ -6,7 +6,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.loops import at_every_end, break_unless
 from sssgen.ir.types import BOOL, INT
 from sssgen.ir.walk import all_expressions, subexpressions
-from sssgen.lang.check.context import FunctionContext
+from sssgen.lang.check.context import AlreadyReported, FunctionContext
 from sssgen.lang.check.evaluation_order import writes_of
 from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.termination import ends, skips
@@ -36,7 +36,7 @@ class LoopChecker:
         before = self.statements.statement(statement.init) if statement.init is not None else []
         condition, tested = None, list[ir.Stmt]()
         if statement.condition is not None:
-            condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+            condition, tested = self.condition(statement.condition)
         steps: list[ir.Stmt] = []
         if statement.step is not None:
             _, steps = self.expressions.with_prelude(statement.step, self.statements.assignments.effect)
@@ -48,7 +48,8 @@ class LoopChecker:
             {part.name for part in subexpressions(condition) if isinstance(part, ir.Local)} if condition else set()
         )
         before, init = _split(before, counters)
-        others, step = _split(steps, counters) if all(map(_fits_in_head, steps)) else (steps, None)
+        in_head = all(map(_fits_in_head, steps)) and not isinstance(statement.condition, s.Declaration)
+        others, step = _split(steps, counters) if in_head else (steps, None)
         if others:
             body = at_every_end(body, others)
         if tested:
@@ -63,13 +64,12 @@ class LoopChecker:
         return [*before, ir.For(init, condition, step, body, span)]
 
     def while_(self, statement: s.WhileStatement) -> list[ir.Stmt]:
-        context, span = self.context, statement.span
+        context, scopes, span = self.context, self.context.function.scopes, statement.span
         errors = len(context.reporter.diagnostics)
-        if isinstance(statement.condition, s.Declaration):
-            hint = "declare it before the loop"
-            raise context.fail(statement.condition.span, "a condition cannot declare a variable here", hint)
-        condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
+        scopes.push()
+        condition, tested = self.condition(statement.condition)
         body = self.loop_body(statement.body)
+        scopes.pop()
         if condition is None or len(context.reporter.diagnostics) > errors:
             return []
         if tested:
@@ -77,6 +77,24 @@ class LoopChecker:
         if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments, context.extent)):
             raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [ir.While(condition, body, span)]
+
+    def condition(self, condition: s.Expression | s.Declaration) -> tuple[ir.Expr | None, list[ir.Stmt]]:
+        """The condition of a loop, and the statements before each test: the variable that it declares, too."""
+        if isinstance(condition, s.Declaration):
+            return self.expressions.with_prelude(condition, self.declared)
+        return self.expressions.with_prelude(condition, self.statements.condition)
+
+    def declared(self, declaration: s.Declaration) -> ir.Expr | None:
+        """The value of the variable that a condition declares."""
+        first, *others = declaration.declarators or (None,)
+        if first is None or first.value is None or others:
+            raise self.context.fail(declaration.span, "a condition declares one variable, which needs a value")
+        try:
+            self.statements.declaration(declaration)
+        except AlreadyReported:
+            self.statements.declare_faulty(declaration)
+            return None
+        return self.statements.condition(first.name)
 
     def do(self, statement: s.DoStatement) -> list[ir.Stmt]:
         """`do body while (test);` is `while (true) { body; if (!test) break; }`; each `continue` tests first, too.

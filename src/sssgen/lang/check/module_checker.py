@@ -46,9 +46,10 @@ def check(file: s.File, text: str, included: ir.Module = ir.Module()) -> ir.Modu
     return module
 
 
-def check_plain(file: s.File, reporter: Reporter, vertex: bool) -> ir.Module:
-    """Checks a file of plain GLSL; `vertex` says that it is a vertex shader. Raises SssgenError with every error."""
-    module = ModuleChecker(CheckContext(reporter, plain=True), vertex).module(file)
+def check_plain(file: s.File, reporter: Reporter, vertex: bool, es: int = 0, converts: bool = False) -> ir.Module:
+    """Checks a file of plain GLSL; `vertex` says that it is a vertex shader, `es` and `converts` are those of
+    `CheckContext`. Raises SssgenError with every error."""
+    module = ModuleChecker(CheckContext(reporter, True, es, converts), vertex).module(file)
     reporter.check()
     return module
 

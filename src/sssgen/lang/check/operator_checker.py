@@ -54,7 +54,7 @@ class OperatorChecker:
             left = pair[0]
         one, other = left.expr, right.expr
         type_ = operator_type(infix.op, one.type, other.type)
-        if type_ is None and self.context.plain and infix.op not in ("<<", ">>"):
+        if type_ is None and self.context.converts and infix.op not in ("<<", ">>"):
             one, other = common_kind(one, other)
             type_ = operator_type(infix.op, one.type, other.type)
         if type_ is None:
@@ -86,7 +86,7 @@ class OperatorChecker:
         yes, before_yes = self.expressions.with_prelude(conditional.yes, self.expressions.check)
         no, before_no = self.expressions.with_prelude(conditional.no, self.expressions.check)
         if yes.expr.type != no.expr.type:
-            one, other = common_kind(yes.expr, no.expr) if self.context.plain else (yes.expr, no.expr)
+            one, other = common_kind(yes.expr, no.expr) if self.context.converts else (yes.expr, no.expr)
             if one.type != other.type:
                 raise self.context.fail(
                     conditional.span,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Sampler, Type
+from sssgen.ir.types import VOID, Sampler, Struct, Type, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
@@ -16,6 +16,11 @@ from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.type_names import named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
+
+_MEMBER = {"uniform", "lowp", "mediump", "highp"}
+_MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
+_BLOCK_LAYOUT = _MEMBER_LAYOUT | {"std140", "shared", "packed", "binding", "set", "push_constant", "location"}
+"""What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
 
 
 class ShaderInterface:
@@ -33,6 +38,7 @@ class ShaderInterface:
             raise context.fail(declaration.qualifiers.span, "a storage buffer is a block: buffer Name { … };")
         storage = self.storage(keywords)
         element, quantity = named_type(context, replace(declaration.type, lengths=()))
+        self.check_passed(declaration, storage, element)
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span
             if name in BUILTIN_VARIABLES:
@@ -61,6 +67,22 @@ class ShaderInterface:
                 interpolation, location = "", -1
             context.variables[name] = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
             context.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
+
+    def check_passed(self, declaration: s.Declaration, storage: str, element: Type) -> None:
+        """Reports what GLSL ES does not pass to or between stages."""
+        context, keywords = self.context, declaration.qualifiers.keywords
+        if not context.es or storage not in ("in", "out"):
+            return
+        span, kind = declaration.qualifiers.span, kind_of(element)
+        if "invariant" in keywords and storage == "in" and context.es >= 300:
+            raise context.fail(span, "an input cannot be invariant", "write it before the output of the other stage")
+        if kind == "bool" and not isinstance(element, Struct):
+            raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
+        if "varying" in keywords and kind != "float":
+            raise context.fail(span, f"a varying is a float, a vector or a matrix, but this is {a_type(element)}")
+        is_fragment_input = storage == "in" and not self.vertex
+        if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
+            raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
 
     def initial_value(self, value: s.Expression, type_: Type, quantity: str, name: str) -> ir.Expr:
         """The value of a variable before main()."""
@@ -139,15 +161,29 @@ class ShaderInterface:
         return members
 
     def check_uniform_block(self, block: s.BlockSyntax) -> None:
-        context = self.context
-        if block.name.text in context.uniform_blocks:
+        context, name = self.context, block.name
+        if name.text in context.uniform_blocks:
             hint = "a block is declared once: give the other one another name"
-            raise context.fail(block.name.span, f"the block '{block.name.text}' is already declared", hint)
-        context.uniform_blocks.add(block.name.text)
+            raise context.fail(name.span, f"the block '{name.text}' is already declared", hint)
+        check_global_name(context, name)
+        context.uniform_blocks.add(name.text)
+        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, _BLOCK_LAYOUT)
         for member in block.members:
             if "sampler" in member.type.name:
                 hint = "declare it outside of the block, as a uniform"
                 raise context.fail(member.type.span, "a block cannot contain textures", hint)
+            if member.type.struct is not None:
+                raise context.fail(member.type.span, "a block cannot declare a struct", "declare it before the block")
+            self.check_qualifiers(member.qualifiers, "a member of a uniform block", _MEMBER, _MEMBER_LAYOUT)
+
+    def check_qualifiers(self, qualifiers: s.Qualifiers, what: str, keywords: set[str], layout: frozenset[str]) -> None:
+        """Reports a qualifier that `what` cannot have."""
+        for keyword in qualifiers.keywords:
+            if keyword not in keywords:
+                raise self.context.fail(qualifiers.span, f"{what} cannot be '{keyword}'")
+        for item, _ in qualifiers.layout:
+            if item not in layout:
+                raise self.context.fail(qualifiers.span, f"{what} has no layout '{item}'")
 
     def uniforms_of(
         self, block: s.BlockSyntax, members: list[s.GlobalSyntax], uniforms: list[ir.Uniform]
@@ -181,6 +217,7 @@ class ShaderInterface:
         context = self.context
         instance: dict[str, Typed] = {}
         if block.instance is not None and members:
+            check_global_name(context, block.instance)
             context.blocks[block.instance.text] = instance
         for written, member in zip(block.members if members else (), members, strict=True):
             for declarator, renamed in zip(written.declarators, member.declaration.declarators, strict=True):

@@ -23,7 +23,7 @@ from sssgen.ir.types import (
 )
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.assignment_checker import AssignmentChecker
-from sssgen.lang.check.constant_values import constant_value
+from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.memory_checker import stored_directly
@@ -130,6 +130,9 @@ class StatementChecker:
                 value = self.expressions.check_as(declarator.value, declared, quantity, f"'{name.text}'")
                 if const:
                     constant = constant_value(context, value)
+                    if context.es and not is_constant(context, value):
+                        message = f"the value of const '{name.text}' is not constant, as GLSL ES requires"
+                        raise context.fail(declarator.value.span, message, "leave const out")
             elif const:
                 raise context.fail(name.span, f"const '{name.text}' needs a value")
             variable = function.scopes.declare(name.text, declared, quantity, not const, value=constant)

@@ -9,7 +9,7 @@ from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.evaluation_order import depends, writes_of
 from sssgen.lang.check.loop_checker import once
 from sssgen.lang.check.statement_checker import StatementChecker
-from sssgen.lang.check.switch_cases import cases_of, has_break
+from sssgen.lang.check.switch_cases import Case, cases_of, has_break
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -44,6 +44,7 @@ class SwitchChecker:
             value = function.temporary("selected", value, position, before=inside)
         elif not tests:
             self.statements.assignments.calls_of(value)
+        self.check_distinct(cases)
         chain: ir.Block = ()
         for case, body in zip(reversed(cases), reversed(bodies), strict=True):
             test = self.matches(value, case.labels)
@@ -56,6 +57,15 @@ class SwitchChecker:
         elif flag is not None:
             function.prelude = [stmt for stmt in function.prelude if getattr(stmt, "name", "") != flag.name]
         return result
+
+    def check_distinct(self, cases: list[Case]) -> None:
+        """Reports a label that an earlier case has."""
+        numbers: set[int] = set()
+        for label in sorted([label for case in cases for label in case.labels], key=lambda label: label.span[1:3]):
+            number = constant_int(self.context, label.value) if label.value is not None else None
+            if number is not None and number in numbers:
+                raise self.context.fail(label.span, f"there is already a case {number}")
+            numbers |= {number} if number is not None else set()
 
     def matches(self, value: ir.Expr, labels: tuple[s.Label, ...]) -> ir.Expr | None:
         """The test whether a switch's value is one of these labels; None for the default."""

@@ -40,21 +40,25 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
     return type_, quantity
 
 
-def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Expression], items: int | None = None) -> Type:
+def array_type(
+    context: CheckContext, element: Type, lengths: Sequence[s.Expression], items: Sequence[int] = ()
+) -> Type:
     """`element` itself without a length, else an array of these constant lengths, the outermost first.
 
-    `items` is the length of `[]`.
+    `items` are the lengths of `[]`, for each of the lengths.
     """
     if not lengths:
         return element
     is_nested = len(lengths) > 1 or isinstance(element, Array)
-    if isinstance(element, Sampler | Void) or (is_nested and not context.plain):
+    if isinstance(element, Sampler | Void) or (is_nested and (not context.plain or 0 < context.es < 310)):
         message = f"there are no arrays of {'arrays' if is_nested else spell(element)}"
+        message += " before GLSL ES 3.10" if is_nested and context.es else ""
         raise context.fail(lengths[0].span, message)
     total = math.prod(unnested(element)[1])
     for index, length in reversed([*enumerate(lengths)]):
-        first = items if index == 0 else None
-        count = first if isinstance(length, s.Unsized) else constant_int(context, length)
+        count = constant_int(context, length) if not isinstance(length, s.Unsized) else None
+        if isinstance(length, s.Unsized) and index < len(items):
+            count = items[index]
         total *= count or 0
         if count is None or count < 1 or total > 65536:
             raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")

@@ -29,12 +29,13 @@ class Fault(Exception):
 _Value = int | Fault
 
 
-def evaluate(tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span) -> int:
-    """The value of an expression after macro expansion, as a signed 64-bit integer; a remaining name is 0.
+def evaluate(tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span, strict: bool = False) -> int:
+    """The value of an expression after macro expansion, as a signed 64-bit integer.
 
-    `is_defined` evaluates `defined X`; `place` is the directive's, for errors at the end. Raises Fault.
+    A remaining name is 0, and an error if the expression is `strict`, as in GLSL ES. `is_defined` evaluates
+    `defined X`; `place` is the directive's, for errors at the end. Raises Fault.
     """
-    reader = _Reader(tokens, is_defined, place)
+    reader = _Reader(tokens, is_defined, place, strict)
     value = reader.choice(0)
     if reader.text:
         raise reader.unexpected()
@@ -46,9 +47,10 @@ def evaluate(tokens: Sequence[Token], is_defined: Callable[[str], bool], place: 
 class _Reader:
     """Reads an expression from left to right."""
 
-    def __init__(self, tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span) -> None:
+    def __init__(self, tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span, strict: bool) -> None:
         self.tokens = tokens
         self.is_defined = is_defined
+        self.strict = strict
         self.place = place
         self.index = 0
 
@@ -128,7 +130,8 @@ class _Reader:
         if token.type == "FLOAT":
             raise Fault(token.span, f"'{token.text}' is not an integer", "#if compares integers only")
         if token.text.isidentifier():
-            return 0
+            hint = "GLSL ES has no default for it: define it, or ask for it with defined()"
+            return Fault(token.span, f"'{token.text}' is not defined", hint) if self.strict else 0
         self.index -= 1
         raise self.unexpected()
 

@@ -89,6 +89,9 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
     return run.result(run.tokens, [])
 
 
+_ES_VERSIONS = (300, 310, 320)
+_VERSIONS = (100, 110, 120, 130, 140, 150, 330, 400, 410, 420, 430, 440, 450, 460)
+_EXTENSION = re.compile(r"[A-Za-z_]\w* ?: ?(?:require|enable|warn|disable)|all ?: ?(?:warn|disable)")
 _PRECISION = re.compile(r"\bprecision\s+(?:low|medium|high)p\s+\w+\s*;")
 
 
@@ -131,6 +134,7 @@ class _Run:
         self.texts: dict[str, str] = {}
         self.repeated: set[str] = set()  # files that were read more than once
         self.version, self.profile = 0, ""
+        self.text_macros: set[str] = set()  # that the text itself defines
         self.extensions: list[str] = []
         self.pragmas: list[str] = []
         self.chain: list[SourceFile] = []
@@ -223,6 +227,12 @@ class _Run:
             frozenset(self.expander.macros) - set(constants),
         )  # fmt: skip
 
+    @property
+    def is_es(self) -> bool:
+        """Whether the text says that it is GLSL ES. One without `#version` may be a part of a text that an engine
+        completes."""
+        return self.version > 0 and self.profile == "es"
+
     # Directives
 
     def directive(self, file: SourceFile, match: re.Match[str]) -> None:
@@ -251,6 +261,9 @@ class _Run:
             self.set_version(plain(rest), place)
         elif name == "extension":
             self.extensions.append(plain(rest))
+            if self.version and not _EXTENSION.fullmatch(self.extensions[-1]):
+                hint = "write #extension NAME : enable; the others are require, warn and disable"
+                self.error(place, f"'{self.extensions[-1]}' is no extension with a behaviour", hint)
         elif name == "pragma":
             self.pragmas.append(plain(rest))
             if self.pragmas[-1] == "once":
@@ -285,6 +298,8 @@ class _Run:
             self.error(place, f"there is no #if before this #{name}")
             return
         branch = branches[-1]
+        if name != "elif" and self.is_es and plain(rest):
+            self.error(place, f"'{plain(rest)}' is not expected after #{name}", "write it as a comment: // …")
         if name == "endif":
             branches.pop()
             return
@@ -305,7 +320,8 @@ class _Run:
             self.error(place, "a condition is missing here")
             return False
         try:
-            return evaluate(self.expander.condition(tokens), self.expander.macros.__contains__, place) != 0
+            defined = self.expander.macros.__contains__
+            return evaluate(self.expander.condition(tokens), defined, place, self.is_es) != 0
         except TooMuch as fault:
             self.stop(*fault.details)
         except Fault as fault:
@@ -371,8 +387,14 @@ class _Run:
         if match is None:
             self.error(place, f"'{arguments}' is not a version", "write #version 330 core or #version 300 es")
             return
+        versions = _ES_VERSIONS if match[2] == "es" else _VERSIONS
+        if int(match[1]) not in versions:
+            hint = f"the versions{' of GLSL ES' if match[2] == 'es' else ''} are {', '.join(map(str, versions))}"
+            self.error(place, f"there is no version {arguments}", hint)
         if self.version not in (0, int(match[1])):
             self.error(place, f"the version is already {self.version}")
+        elif self.tokens or self.text_macros:
+            self.error(place, "#version must be the first line", "only comments may be above it")
         self.version = int(match[1])
         self.profile = "es" if self.version == 100 else match[2] or ""
         for name in builtin_macros(0, ""):
@@ -390,7 +412,11 @@ class _Run:
         macros, constants = self.expander.macros, self.constants
         if macro.name in macros and macros[macro.name].same_as(macro):
             return
+        if keep and self.version and macro.name in self.text_macros:
+            self.error(tokens[0].span, f"'{macro.name}' is already defined as something else", f"#undef {macro.name}")
         self.undefine(macro.name)
+        if keep:
+            self.text_macros.add(macro.name)
         macros[macro.name] = macro
         if keep and constants is not None and self.between_declarations():
             constants.add(macro, tokens[0], self.expander.constants, len(self.tokens))
@@ -399,6 +425,7 @@ class _Run:
         if self.constants is not None:
             self.constants.end(name, self.expander.constants, self.expander.used, len(self.tokens))
         self.expander.macros.pop(name, None)
+        self.text_macros.discard(name)
 
     def between_declarations(self) -> bool:
         """Whether a declaration may be inserted here."""

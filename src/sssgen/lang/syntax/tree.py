@@ -217,7 +217,7 @@ class IfStatement:
 @dataclass(slots=True)
 class ForStatement:
     init: Statement | None
-    condition: Expression | None
+    condition: Expression | Declaration | None
     step: Expression | None
     body: Statement
     span: Span
@@ -226,7 +226,7 @@ class ForStatement:
 
 @dataclass(slots=True)
 class WhileStatement:
-    condition: Expression
+    condition: Expression | Declaration
     body: Statement
     span: Span
     depth: int

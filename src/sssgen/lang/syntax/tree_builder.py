@@ -11,6 +11,9 @@ from sssgen.ir.spans import Span
 from sssgen.lang.syntax import tree as s
 from sssgen.lang.syntax.tokens import Token
 
+_NOT_OF_PARAMETERS = frozenset({"uniform", "varying", "attribute", "buffer", "shared", "invariant", "flat"})
+_NOT_OF_RESULTS = _NOT_OF_PARAMETERS | {"in", "out", "inout", "const"}
+
 
 class Builder:
     """Builds one file's tree. `too_deep` is the first place that nests more than `limit` levels deep."""
@@ -53,6 +56,7 @@ class Builder:
 
     def head(self, children: list[Any]) -> tuple[s.Qualifiers, s.TypeName, s.Name]:
         qualifiers, type_, token = children
+        self.refuse(qualifiers, _NOT_OF_RESULTS, "a function")
         return qualifiers, type_, s.Name(token.text, token.span)
 
     def function(self, children: list[Any]) -> s.FunctionSyntax:
@@ -70,6 +74,7 @@ class Builder:
 
     def param(self, children: list[Any]) -> s.Parameter:
         qualifiers, type_, name, lengths = children
+        self.refuse(qualifiers, _NOT_OF_PARAMETERS, "a parameter")
         direction = next((keyword for keyword in qualifiers.keywords if keyword in ("in", "out", "inout")), "in")
         label = s.Name(name.text, name.span) if name is not None else None
         return s.Parameter(direction, type_, label, lengths or (), "const" in qualifiers.keywords)
@@ -108,6 +113,11 @@ class Builder:
         name, sign, value = children
         self.require_equals(sign)
         return name.text, value
+
+    def refuse(self, qualifiers: s.Qualifiers, keywords: frozenset[str], what: str) -> None:
+        """Reports qualifiers that cannot be before `what`."""
+        for keyword in keywords.intersection(qualifiers.keywords):
+            self.wrong.append((qualifiers.span, f"{what} cannot be '{keyword}'"))
 
     def require_equals(self, sign: Token | None) -> None:
         """Reports an assignment operator other than '='."""

@@ -134,6 +134,8 @@ class Uniformity:
                 self.block((loop.init,), inner if isinstance(loop.init, ir.Declare) else depth)
             if loop.step is not None:
                 self.block((loop.step,), inner)
+            if isinstance(loop.init, ir.Declare):
+                self.depths[loop.init.name] = depth  # the step runs for all lanes, what the body writes does not
         self.block(loop.body, inner)
 
     def facts(self, loop: ir.For | ir.While, inside: bool) -> LoopFacts:

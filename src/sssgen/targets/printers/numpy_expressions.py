@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
+from sssgen.ir.types import INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of, unnested
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.numpy_numbers import Numbers, nonzero
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
@@ -53,7 +53,7 @@ class NumpyExpressions(Printer):
         if isinstance(expr, ir.Index):
             length = expr.value.type.length if isinstance(expr.value.type, Array) else components(expr.value.type)
             inside = isinstance(expr.index, ir.Literal) and 0 <= expr.index.value < length
-            if inside and not isinstance(expr.type, Struct):
+            if inside and not isinstance(unnested(expr.type)[0], Struct):
                 return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
             return f"index({self.expr(expr.value)}, {self.expr(expr.index)})", PRIMARY
         return super().bound(expr)

@@ -40,11 +40,18 @@ def _by_derivatives(texture: Texture, coord: Value, bias: Value) -> Value:
     return texture.level(place, dFdx(place), dFdy(place)) + bias
 
 
+def _is_whole(texture: Texture) -> bool:
+    """Whether its texels are integers, which have no filter: `ir.intrinsics.integer_reads`."""
+    return texture.levels[0].dtype.kind in "iu"
+
+
 def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
     """With mipmaps it needs a `grid`, for the derivatives. For a texture that compares, the last component is the
     reference."""
     if texture.compare:
         return textureCompare(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return texture.nearest(coord)
     return texture.sample(coord, _by_derivatives(texture, coord, bias))
 
 
@@ -52,12 +59,16 @@ def textureOffset(texture: Texture, coord: Value, offset: Value, bias: Value = 0
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, _by_derivatives(texture, coord, bias), _first(offset))
 
 
 def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return texture.nearest(coord)
     return texture.sample(coord, level)
 
 
@@ -65,12 +76,16 @@ def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, level, _first(offset))
 
 
 def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
     if texture.compare:
         return textureCompareLod(texture, coord[:-1], coord[-1])
+    if _is_whole(texture):
+        return texture.nearest(coord)
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy))
 
 
@@ -78,6 +93,8 @@ def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offs
     """The offset is the same in all lanes."""
     if texture.compare:
         return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
+    if _is_whole(texture):
+        return texture.nearest(coord, _first(offset))
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy), _first(offset))
 
 

@@ -134,6 +134,16 @@ class Texture:
                     result += weight * self._sample(number, coord, read)
             return result
 
+    def nearest(self, coord: Array, offset: Array | None = None) -> Array:
+        """The nearest texels of level 0, (4, n), as `sample` with this filter has them: those of integers stay so."""
+        coord, layer = self._layer(coord)
+        face = None
+        if self.dim == "Cube":
+            face, coord = _project(coord)
+        with np.errstate(all="ignore"):
+            low = [np.floor(part * side) for part, side in zip(coord, self.size(), strict=True)]
+            return self._corner(0, low, (0,) * len(low), face, _Read(layer, offset, None))
+
     def gather(self, coord: Array, channel: int, offset: Array | None = None, reference: Array | None = None) -> Array:
         """One channel of the four texels, (4, n), that a linear filter reads at level 0, in this order:
         (0, 1), (1, 1), (1, 0), (0, 0). With a `reference`, () or (n,), they are 1 or 0."""
@@ -191,7 +201,8 @@ class Texture:
         """The texels, (4, n), of one corner of the filter from the lowest one, or their comparisons."""
         shift = np.zeros((len(low), 1), np.int64) if read.offset is None else read.offset
         places = [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)]
-        values = self._wrap(level, places, face, read.layer).astype(low[0].dtype)
+        texels = self._wrap(level, places, face, read.layer)
+        values = texels if self.kind != "float" else texels.astype(low[0].dtype)
         if read.reference is None:
             return values
         return np.where(read.reference <= values[:1], 1.0, 0.0).astype(values.dtype)

@@ -1,0 +1,1 @@
+"""Shader suites that other people wrote, run on every back end: docs/suites.md."""

@@ -1,0 +1,67 @@
+"""Runs outside suites: python -m qualification.suites FOLDER [--suites NAME,...] [--every N] [--write].
+
+FOLDER has the repositories, each under its own name: FOLDER/VK-GL-CTS. An interrupted run continues where it stopped.
+`--every N` runs each N-th case, `--write` writes docs/suites.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+from pathlib import Path
+
+from qualification.suites.outcomes import Result
+from qualification.suites.page import page, table
+from qualification.suites.sources import SUITES
+from sssgen.jobs.executor import Failure, Item, run
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_writer import write_files
+from sssgen.support.progress import ProgressBar
+
+BATCH = 25
+"""Cases that one work item runs."""
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(prog="python -m qualification.suites", description=__doc__)
+    options.add_argument("folder", type=Path, metavar="FOLDER")
+    options.add_argument("--suites", type=lambda text: text.split(","), default=list(SUITES))
+    options.add_argument("--every", type=int, default=1, metavar="N")
+    options.add_argument("--processes", type=int, default=os.cpu_count())
+    options.add_argument("--write", action="store_true")
+    arguments = options.parse_args()
+    results: dict[str, list[Result]] = {}
+    for name in arguments.suites:
+        results[name] = results_of(name, arguments.folder, arguments.every, arguments.processes)
+        print(table({name: results[name]}), flush=True)
+    if arguments.write:
+        today = datetime.date.today().isoformat()
+        write_files(str(DOCS), {"suites.md": page(results, today, arguments.every)})
+
+
+def results_of(name: str, folder: Path, every: int, processes: int) -> list[Result]:
+    """The results of a suite. Raises SssgenError where its folder is missing."""
+    suite = SUITES[name]
+    root = folder / suite.repository.rpartition("/")[2]
+    for part in suite.folders:
+        if not (root / part).is_dir():
+            raise failure(f"{root / part} is missing", f"bring https://github.com/{suite.repository} at {suite.commit}")
+    cases = list(suite.cases(root))[::every]
+    batches = [tuple(cases[start : start + BATCH]) for start in range(0, len(cases), BATCH)]
+    items = [
+        Item("qualification.suites.deqp_runs:run_cases", (batch,), f"{name}: {batch[0].name}") for batch in batches
+    ]
+    with ProgressBar() as progress:
+        outcomes = run(items, processes=processes, progress=progress)
+    results: list[Result] = []
+    for batch, outcome in zip(batches, outcomes, strict=True):
+        if isinstance(outcome, Failure):
+            raise failure(f"{batch[0].name} to {batch[-1].name}: {outcome.message}", outcome.hint)
+        results += outcome
+    return results
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,39 @@
+"""What a back end made of a case of a suite."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+RIGHT, WRONG, INVALID, REFUSED, CRASH, ACCEPTED, SKIPPED = (
+    "right", "wrong", "invalid", "refused", "crash", "accepted", "skipped",
+)  # fmt: skip
+OUTCOMES = {
+    RIGHT: "the values are as expected, the text compiles, or what is invalid is refused",
+    WRONG: "another value, and no message",
+    INVALID: "a compiler refuses the emitted text",
+    REFUSED: "sssgen refuses a valid program, with a message",
+    CRASH: "an internal error of sssgen",
+    ACCEPTED: "sssgen translates a program that a compiler has to refuse",
+    SKIPPED: "the runner cannot run the case: it needs stages or settings that no target has",
+}
+"""Outcome → its meaning."""
+
+
+class Outcome(NamedTuple):
+    """The outcome of a case on a back end."""
+
+    outcome: str
+    """One of OUTCOMES"""
+    why: str = ""
+    """The message, or the value"""
+
+
+class Result(NamedTuple):
+    """The outcomes of a case."""
+
+    case: str
+    kind: str
+    """`values`, `builds` or `must fail`"""
+    outcomes: Mapping[str, Outcome]
+    """By the name of the back end or of the target"""

@@ -1,0 +1,78 @@
+"""docs/suites.md: what outside suites say of each back end."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+
+from qualification.suites.deqp_runs import AUTHOR, BACKENDS, FRONT
+from qualification.suites.lenience import LENIENCE, class_of
+from qualification.suites.outcomes import ACCEPTED, OUTCOMES, RIGHT, Result
+from qualification.suites.sources import SUITES
+
+_TITLES = {**BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
+
+
+def table(results: Mapping[str, Sequence[Result]]) -> str:
+    """The number of each outcome, by suite, kind of case and back end."""
+    lines = ["| suite | cases | back end | " + " | ".join(OUTCOMES) + " |", "|---|---|---|" + "---:|" * len(OUTCOMES)]
+    for suite, own in results.items():
+        for kind in dict.fromkeys(result.kind for result in own):
+            of_kind = [result for result in own if result.kind == kind]
+            for name in dict.fromkeys(name for result in of_kind for name in result.outcomes):
+                counts = Counter(result.outcomes[name].outcome for result in of_kind if name in result.outcomes)
+                cells = " | ".join(str(counts[outcome] or "") for outcome in OUTCOMES)
+                lines.append(f"| {suite} | {kind} | {_TITLES.get(name, name)} | {cells} |")
+    return "\n".join(lines)
+
+
+def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
+    """The page's text."""
+    every_text = "" if every == 1 else f" --every {every}"
+    lines = [
+        "# Outside suites", "",
+        "Shader suites that nobody of this project wrote, run on every back end: "
+        f"`make suites SUITES=FOLDER`, which is `python -m qualification.suites FOLDER{every_text} --write`, "
+        f"of {date}. "
+        "Nothing of a suite is in this repository.", "",
+        "| suite | repository | folders | commit | license |", "|---|---|---|---|---|",
+        *(
+            f"| {name} | [{suite.repository}](https://github.com/{suite.repository}) | {', '.join(suite.folders)} | "
+            f"`{suite.commit[:12]}` | {suite.license} |"
+            for name, suite in SUITES.items()
+            if name in results
+        ),
+        "", "FOLDER has each repository under its own name, at that commit.", "",
+        "## Results", "", table(results), "",
+        *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
+        "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs "
+        "are compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only "
+        "has to build is translated with both of its stages.", "",
+        "## What is accepted and should not be", "",
+        "| class | cases | why |", "|---|---:|---|",
+        *lenience_rows(result for own in results.values() for result in own), "",
+        "## What is refused, wrong or invalid", "",
+        *problems(result for own in results.values() for result in own), "",
+    ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def lenience_rows(results: Iterable[Result]) -> list[str]:
+    """A row for each class of programs that a driver refuses and sssgen accepts."""
+    accepted = [result for result in results if any(each.outcome == ACCEPTED for each in result.outcomes.values())]
+    counts = Counter(class_of(result.case) for result in accepted)
+    return [f"| {name} | {counts[name]} | {LENIENCE[name].why} |" for name in LENIENCE if counts[name]]
+
+
+def problems(results: Iterable[Result]) -> list[str]:
+    """The messages of cases that are not right, with the number of cases of each and one of them."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for result in results:
+        for name, outcome in result.outcomes.items():
+            if outcome.outcome not in (RIGHT, ACCEPTED, "skipped") and name != AUTHOR:
+                found.setdefault((outcome.outcome, outcome.why.splitlines()[0][:120]), []).append(result.case)
+    rows = sorted(found.items(), key=lambda item: (item[0][0], -len(item[1])))
+    return ["| outcome | message | cases | such as |", "|---|---|---:|---|"] + [
+        f"| {outcome} | {why.replace('|', chr(92) + '|')} | {len(set(cases))} | `{cases[0]}` |"
+        for (outcome, why), cases in rows
+    ]

@@ -1,0 +1,42 @@
+"""The suites, and where their owners publish them; nothing of them is in this repository."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from qualification.suites.deqp_cases import Case, read
+
+
+class Suite(NamedTuple):
+    """A suite of one repository."""
+
+    repository: str
+    commit: str
+    """The commit that docs/suites.md was measured with"""
+    folders: tuple[str, ...]
+    """What is read of it, below the folder of the repository"""
+    license: str
+    cases: Callable[[Path], Iterator[Case]]
+    """The cases of the repository in a folder"""
+
+
+def deqp(*folders: str) -> Callable[[Path], Iterator[Case]]:
+    """A reader of the shader cases in these folders of VK-GL-CTS."""
+
+    def cases(root: Path) -> Iterator[Case]:
+        for folder in folders:
+            for path in sorted((root / folder).rglob("*.test")):
+                parts = path.relative_to(root / "data").with_suffix("").parts
+                yield from read(path, "/".join(part for part in parts if part != "shaders"))
+
+    return cases
+
+
+_VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
+SUITES = {
+    name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"))
+    for name in ("gles2", "gles3", "gles31")
+}
+"""Name → suite."""
