@@ -128,6 +128,12 @@ def _examples(pattern: str, but: str = "") -> list[bytes]:
     return [path.read_bytes() for path in result if path.parent.name != but]
 
 
+def _scenes() -> list[bytes]:
+    """The examples' scenes, whose surroundings are elsewhere: they are read in a folder of their own."""
+    surroundings = f'"{(data.folder("examples") / "surroundings").as_posix()}/'.encode()
+    return [seed.replace(b'"../surroundings/', surroundings) for seed in _examples("*/scene.toml")]
+
+
 def _sources() -> list[bytes]:
     own = sorted(Path(TECHNIQUES).rglob("*.sss"), key=lambda path: (path.stat().st_size, path.name))
     return [SAMPLE.encode(), *(path.read_bytes() for path in own[::6])]
@@ -253,7 +259,7 @@ FRONT_ENDS = {
     "source": FrontEnd(".glsl", _source, _sources),
     "plain glsl": FrontEnd(".glsl", _plain, _plain_sources),
     "material": FrontEnd(".toml", _material, lambda: _examples("*/[!s]*.toml", but="lab")),
-    "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), lambda: _examples("*/scene.toml")),
+    "scene": FrontEnd(".toml", lambda path: scene_loading.load(path), _scenes),
     "measured scene": FrontEnd(".toml", lambda path: measured_scene.load(str(path)), lambda: _examples("lab/*.toml")),
     "ci table": FrontEnd(".eval.json", _ci, _tables),
     "ci folder": FrontEnd(".toml", _ci_folder, lambda: _examples("ci/*/*.toml")),

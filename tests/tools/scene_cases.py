@@ -93,6 +93,7 @@ def scene_case(
     `powers`: the sides of the picture are powers of two.
     """
     example = Path(shutil.copytree(ROOT / "examples" / name, folder / name))
+    shutil.copytree(ROOT / "examples" / "surroundings", folder / "surroundings", dirs_exist_ok=True)
     text, count = re.subn(
         r"tint = \[.*\]", "tint = [0.0, 0.0, 0.0, 1.0]", (example / f"{name}.toml").read_text("utf-8")
     )

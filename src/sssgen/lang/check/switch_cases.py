@@ -24,7 +24,8 @@ class Case(NamedTuple):
 def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
     """The cases of a switch.
 
-    Reports statements before the first, a second default, a last label without statements, and too many statements.
+    Reports statements before the first, a second default, a last label without statements in GLSL ES, and too many
+    statements.
     """
     groups: list[tuple[list[s.Label], list[s.Statement]]] = []
     for statement in switch.body.statements:
@@ -50,7 +51,7 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
             raise context.fail(labels[0].span, "this switch has two defaults")
         else:
             default = case
-    if groups and not groups[-1][1]:
+    if context.es and groups and not groups[-1][1]:
         raise context.fail(groups[-1][0][-1].span, "nothing follows this label", "write break; after it")
     return [*cases, default] if default is not None else cases
 
