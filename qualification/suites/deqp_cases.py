@@ -24,11 +24,11 @@ class Value(NamedTuple):
     """An input, an output or a uniform of a case."""
 
     kind: str
-    """`input`, `output` or `uniform`"""
+    """`input`, `output` or `uniform`; of the runner, `initial`: what the text gives to its own variable"""
     type: str
     name: str
     rows: tuple[tuple[float, ...], ...]
-    """One value for each run: the numbers of a scalar or vector, or of a matrix row by row"""
+    """One value for each run: the numbers of a scalar or vector, or of a matrix column by column"""
 
 
 class Case(NamedTuple):

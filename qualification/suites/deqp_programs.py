@@ -10,6 +10,7 @@ import numpy as np
 
 from qualification.suites.deqp_cases import BOTH, Case, Value
 from sssgen.analyse.verify.driven_function import DrivenFunction, Inputs
+from sssgen.analyse.verify.plain_inputs import KINDS
 from sssgen.analyse.verify.plain_probes import FunctionProbes, probe_functions
 from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain
 from sssgen.analyse.verify.verification import load
@@ -24,7 +25,6 @@ from sssgen.support.diagnostics import failure
 
 NEAR = 0.05
 """A float is right within this distance, plus this share of its value: the suite's own limit."""
-KINDS = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 _MARK = re.compile(r"\$\{([A-Z_]+)(?::[a-z-]+)?\}")
 
 
@@ -76,9 +76,7 @@ def load_stage(case: Case, stage: str) -> Module:
 
 
 def function_text(case: Case) -> Plain:
-    """The text of a case of one stage as a function of its inputs. Raises SssgenError where it has several stages."""
-    if BOTH not in case.stages:
-        raise failure("the case has several stages")
+    """The text of a case of one stage as a function of its inputs. Raises SssgenError for members of uniforms."""
     if any("." in value.name or "[" in value.name for value in case.values):
         raise failure("the case sets members of uniforms")
     text = case.stages[BOTH]
@@ -88,10 +86,10 @@ def function_text(case: Case) -> Plain:
         if value.kind != "uniform" or _lacks(text, value)
     ]
     marks = {"DECLARATIONS": "\n".join(lines), "POSITION_FRAG_COLOR": "gl_FragColor"}
-    if case.version not in ("", "100 es") and "POSITION_FRAG_COLOR" in case.stages[BOTH]:
+    if case.version not in ("", "100 es") and "POSITION_FRAG_COLOR" in text:
         marks["POSITION_FRAG_COLOR"] = "dEQP_FragColor"
         marks["DECLARATIONS"] += "\nvec4 dEQP_FragColor;"
-    return plain(_MARK.sub(lambda mark: marks.get(mark[1], ""), case.stages[BOTH]))
+    return plain(_MARK.sub(lambda mark: marks.get(mark[1], ""), text))
 
 
 def _lacks(text: str, uniform: Value) -> bool:

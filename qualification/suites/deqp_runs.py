@@ -1,4 +1,4 @@
-"""Runs cases of VK-GL-CTS: those with values on every back end, the others through the front end and the compilers."""
+"""Runs cases of VK-GL-CTS: those with values on every back end, the others through the front end and the printers."""
 
 from __future__ import annotations
 

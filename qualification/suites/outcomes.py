@@ -9,9 +9,9 @@ RIGHT, WRONG, INVALID, REFUSED, CRASH, ACCEPTED, SKIPPED = (
     "right", "wrong", "invalid", "refused", "crash", "accepted", "skipped",
 )  # fmt: skip
 OUTCOMES = {
-    RIGHT: "the values are as expected, the text compiles, or what is invalid is refused",
+    RIGHT: "the values are as expected, both stages are translated, or what is invalid is refused",
     WRONG: "another value, and no message",
-    INVALID: "a compiler refuses the emitted text",
+    INVALID: "a back end refuses the emitted text",
     REFUSED: "sssgen refuses a valid program, with a message",
     CRASH: "an internal error of sssgen",
     ACCEPTED: "sssgen translates a program that a compiler has to refuse",
@@ -34,6 +34,6 @@ class Result(NamedTuple):
 
     case: str
     kind: str
-    """`values`, `builds` or `must fail`"""
+    """`values`, `builds`, `must fail` or `skipped`"""
     outcomes: Mapping[str, Outcome]
     """By the name of the back end or of the target"""

@@ -47,7 +47,7 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
         "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs "
         "are compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only "
-        "has to build is translated with both of its stages.", "",
+        "has to build is translated with both of its stages; the texts are not compiled.", "",
         "## What is accepted and should not be", "",
         "| class | cases | why |", "|---|---:|---|",
         *lenience_rows(result for own in results.values() for result in own), "",

@@ -102,7 +102,7 @@ def test_a_file_in_another_format(tmp_path: Path) -> None:
 
 
 def test_each_kind_of_case_has_its_outcome(tmp_path: Path) -> None:
-    pytest.importorskip("moderngl")
+    pytest.importorskip("moderngl", reason="moderngl is missing: pip install -e '.[gl]'")
     results = [run_case(case) for case in cases(tmp_path)]
     assert [result.kind for result in results] == ["values", "must fail", "builds", "skipped"]
     assert all(set(outcomes(result).values()) == {"right"} for result in results[:3])

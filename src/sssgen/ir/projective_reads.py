@@ -1,8 +1,8 @@
 """Projective reads of textures: the coordinate is divided by its last component, then the texture is read.
 
-    plain_read("textureProjLodOffset")       # "textureLodOffset"
-    kept_components(SAMPLER_2D, VEC4)        # 2: P.xy / P.w
-    kept_components(SHADOW_2D, VEC4)         # 3: P.xyz / P.w, whose last component is the reference
+    PROJECTIVE_READS["textureProjLodOffset"]     # "textureLodOffset"
+    kept_components(Sampler("2D"), VEC4)         # 2: P.xy / P.w
+    kept_components(Sampler("3D"), VEC4)         # 3: P.xyz / P.w, as of a texture that compares
 
 The front end writes them so; no other part of the compiler knows them.
 Source: chapter 8.9 of the GLSL 4.60 specification, and 8.8 of GLSL ES 3.00.

@@ -54,7 +54,7 @@ ES_BUILTINS = frozenset(
     equal notEqual any all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset
     textureProjOffset textureLodOffset textureProjLod textureProjLodOffset textureGrad textureGradOffset textureProjGrad
     textureProjGradOffset dFdx dFdy fwidth
-    """.split()  # noqa: SIM905
+    """.split()  # noqa: SIM905 - a hundred names
 )
 """The builtin functions of GLSL ES 3.00, which a text of this version or a later one may not define."""
 

@@ -51,7 +51,8 @@ EXTREMES = {
 }  # fmt: skip
 """Their extremes; of the others, the ends of their ranges."""
 
-_KINDS = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+KINDS = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+"""The numbers of an input, by the kind of its type."""
 
 
 class Source(NamedTuple):

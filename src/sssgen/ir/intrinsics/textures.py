@@ -4,8 +4,8 @@ The coordinate of a texture with layers ends with the layer, that of a comparing
 WGSL need some of these as separate arguments. Builtins of the project have them so, `…Layer…` and `…Compare…`
 (`texture_parts.py`); the polyfills use these.
 
-Integer texels are fetched (`integer_reads.py`), as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a statement; its
-printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
+Integer texels are fetched (`integer_reads.py`), as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a
+statement; its printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
 """
 
 from __future__ import annotations

@@ -63,9 +63,10 @@ class SwitchChecker:
         numbers: set[int] = set()
         for label in sorted([label for case in cases for label in case.labels], key=lambda label: label.span[1:3]):
             number = constant_int(self.context, label.value) if label.value is not None else None
-            if number is not None and number in numbers:
+            if number in numbers:
                 raise self.context.fail(label.span, f"there is already a case {number}")
-            numbers |= {number} if number is not None else set()
+            if number is not None:
+                numbers.add(number)
 
     def matches(self, value: ir.Expr, labels: tuple[s.Label, ...]) -> ir.Expr | None:
         """The test whether a switch's value is one of these labels; None for the default."""
