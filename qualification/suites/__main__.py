@@ -50,9 +50,7 @@ def results_of(name: str, folder: Path, every: int, processes: int) -> list[Resu
             raise failure(f"{root / part} is missing", f"bring https://github.com/{suite.repository} at {suite.commit}")
     cases = list(suite.cases(root))[::every]
     batches = [tuple(cases[start : start + BATCH]) for start in range(0, len(cases), BATCH)]
-    items = [
-        Item("qualification.suites.deqp_runs:run_cases", (batch,), f"{name}: {batch[0].name}") for batch in batches
-    ]
+    items = [Item(suite.runner, (batch,), f"{name}: {batch[0].name}") for batch in batches]
     with ProgressBar() as progress:
         outcomes = run(items, processes=processes, progress=progress)
     results: list[Result] = []

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
-from qualification.suites.deqp_cases import Case, read
+from qualification.suites import deqp_cases
+
+
+class Case(Protocol):
+    """A case of a suite; it can be pickled."""
+
+    @property
+    def name(self) -> str: ...
 
 
 class Suite(NamedTuple):
@@ -20,23 +27,28 @@ class Suite(NamedTuple):
     license: str
     cases: Callable[[Path], Iterator[Case]]
     """The cases of the repository in a folder"""
+    runner: str
+    """`module:function`, which makes a list of Results of a sequence of cases"""
 
 
-def deqp(*folders: str) -> Callable[[Path], Iterator[Case]]:
+def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
     """A reader of the shader cases in these folders of VK-GL-CTS."""
 
-    def cases(root: Path) -> Iterator[Case]:
+    def cases(root: Path) -> Iterator[deqp_cases.Case]:
         for folder in folders:
             for path in sorted((root / folder).rglob("*.test")):
                 parts = path.relative_to(root / "data").with_suffix("").parts
-                yield from read(path, "/".join(part for part in parts if part != "shaders"))
+                yield from deqp_cases.read(path, "/".join(part for part in parts if part != "shaders"))
 
     return cases
 
 
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
 SUITES = {
-    name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"))
+    name: Suite(
+        *_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"),
+        "qualification.suites.deqp_runs:run_cases",
+    )  # fmt: skip
     for name in ("gles2", "gles3", "gles31")
 }
 """Name → suite."""
