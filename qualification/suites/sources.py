@@ -46,9 +46,12 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
 SUITES = {
     name: Suite(
-        *_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"),
+        *_VK_GL_CTS,
+        (f"data/{name}/shaders",),
+        "Apache-2.0",
+        deqp(f"data/{name}/shaders"),
         "qualification.suites.deqp_runs:run_cases",
-    )  # fmt: skip
+    )
     for name in ("gles2", "gles3", "gles31")
 }
 """Name → suite."""
