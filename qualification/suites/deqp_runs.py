@@ -13,7 +13,10 @@ from sssgen.analyse.verify.machines import Machines, start_machines
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import SssgenError
 
-BACKENDS = {"numpy": "NumPy", "gl": "GLSL 3.30", "webgpu": "WGSL", "hlsl": "HLSL"}
+BACKENDS = {
+    "numpy": "NumPy", "gl": "GLSL 3.30", "gl-es": "GLSL ES 3.00", "webgpu": "WGSL, naga", "browser": "WGSL, Tint", "hlsl": "HLSL, DXC",
+    "metal": "Metal, stand-in",
+}
 """The back ends that run values, and their titles."""
 AUTHOR = "driver"
 """The driver with the author's own text: what it does wrong, no translation is blamed for."""
