@@ -34,6 +34,9 @@ class MemoryChecker:
         sizes = {name: value for name, value in layout.qualifiers.layout if name in _SIZES and value is not None}
         context = self.context
         if "uniform" in layout.qualifiers.keywords:
+            if any(name == "std430" for name, _ in layout.qualifiers.layout):
+                message = "std430 is a layout of storage buffers, not of uniform blocks"
+                raise context.fail(layout.qualifiers.span, message, "write std140")
             context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
         if not sizes or "in" not in layout.qualifiers.keywords:
             return
@@ -161,8 +164,11 @@ class MemoryChecker:
         return Typed(result if result is not None else ir.Literal(VOID, 0, span))
 
     def check_stage(self) -> None:
-        """Reports what only a compute shader can have, in any other file."""
+        """Reports what only a compute shader can have, in any other file, and what only a fragment shader can have."""
         context = self.context
+        if context.workgroup or (context.es and context.language.vertex):
+            for span in context.derivatives:
+                context.reporter.error(span, "derivatives along the screen belong to fragment shaders")
         if context.workgroup:
             return
         hint = "a compute shader has layout(local_size_x = 64) in;"
