@@ -37,3 +37,7 @@ class Result(NamedTuple):
     """`values`, `builds`, `must fail` or `skipped`"""
     outcomes: Mapping[str, Outcome]
     """By the name of the back end or of the target"""
+
+
+class SuiteFormatError(Exception):
+    """A file of a suite that is not as its reader expects."""

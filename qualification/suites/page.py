@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from qualification.suites.deqp_runs import AUTHOR, BACKENDS, FRONT
+from qualification.suites.deqp_runs import AUTHOR, BACKENDS
 from qualification.suites.lenience import LENIENCE, class_of
+from qualification.suites.machines import TITLES
 from qualification.suites.outcomes import ACCEPTED, OUTCOMES, RIGHT, Result
 from qualification.suites.sources import SUITES
 
-_TITLES = {**BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
+_TITLES = {**TITLES, **BACKENDS}
 
 
 def table(results: Mapping[str, Sequence[Result]]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import deqp_cases
+from qualification.suites import amber_cases, deqp_cases
 
 
 class Case(Protocol):
@@ -43,6 +43,12 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
     return cases
 
 
+def amber(root: Path) -> Iterator[amber_cases.Case]:
+    """The GraphicsFuzz cases of VK-GL-CTS."""
+    yield from map(amber_cases.read, sorted((root / _AMBER).glob("*.amber")))
+
+
+_AMBER = "external/vulkancts/data/vulkan/amber/graphicsfuzz"
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
 SUITES = {
     name: Suite(
@@ -53,5 +59,9 @@ SUITES = {
         "qualification.suites.deqp_runs:run_cases",
     )
     for name in ("gles2", "gles3", "gles31")
+} | {
+    "amber-graphicsfuzz": Suite(
+        *_VK_GL_CTS, (_AMBER,), "Apache-2.0", amber, "qualification.suites.amber_runs:run_cases"
+    ),
 }
 """Name → suite."""

@@ -1,0 +1,250 @@
+"""Programs of two stages whose result is a picture: as their author wrote them, and translated.
+
+Pictures have the rows of OpenGL: the first one is at the bottom, and `gl_FragCoord` is as the author means it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from qualification.suites.machines import AUTHOR, crash, machines, message
+from qualification.suites.outcomes import INVALID, REFUSED, RIGHT, WRONG, Outcome
+from sssgen.ir.types import BY_NAME, Matrix, components, kind_of
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.two_stages import Source, TranslatedProgram, transpile_stages
+from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, Text
+from sssgen.run.backends.draw_backend import DrawingBackend
+from sssgen.run.render.shell_values import material_block
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets.program_reflection import ROWS
+from sssgen.targets.reflection_record import ProgramReflection, ProgramTexture, ProgramUniform
+from sssgen.targets.runtime.numpy_textures import Texture
+
+TARGETS = {
+    "gl": "glsl-330", "gl-es": "glsl-es-300", "webgpu": "wgsl", "browser": "wgsl", "hlsl": "hlsl",
+}  # fmt: skip
+"""The back ends that draw, and the target of each."""
+_DTYPES: dict[str, type] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
+_BLOCK = re.compile(r"layout\s*\(([^()]*)\)(\s*uniform\s+\w+\s*\{)")
+_LAYOUT = re.compile(r"layout\s*\(([^()]*\bset\b[^()]*)\)")
+_INSTANCE = re.compile(r"\buniform\s+(\w+)\s*\{[^{}]*\}\s*(\w+)")
+_NAME = "case"
+_POSITION = "picture_position"
+_OLD = ("", "100", "100 es", "110", "120")
+"""The versions that have attributes."""
+
+
+class Mesh(NamedTuple):
+    """What the vertex stage reads."""
+
+    attributes: Mapping[str, Array]
+    """By name: (vertices, components)."""
+    triangles: Array
+    """(count, 3)."""
+
+
+class PictureProgram(NamedTuple):
+    """A program, what it reads, and the size of its picture."""
+
+    vertex: str
+    fragment: str
+    size: tuple[int, int]
+    mesh: Mesh
+    uniforms: Mapping[str, Array] = {}
+    """By the author's name: `lights[0].color`."""
+    blocks: Mapping[str, bytes] = {}
+    """The author's uniform blocks by name, in the layout std140."""
+    textures: Mapping[str, Texture] = {}
+
+
+Judge: TypeAlias = Callable[[Sequence[Array], Sequence[Array] | None], str]
+"""What is wrong with the pictures of a case's programs, beside those of the driver; '' where nothing is."""
+
+
+def of_fragment(fragment: str, size: tuple[int, int]) -> PictureProgram:
+    """The program of a fragment shader that covers the picture and reads no values of a vertex shader."""
+    version = re.search(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", fragment, re.MULTILINE)
+    number = version[1] if version else ""
+    head = f"#version {number or '100'}\n"
+    word = "attribute" if number in _OLD else "in"
+    vertex = f"{head}{word} vec4 {_POSITION};\nvoid main()\n{{\n    gl_Position = {_POSITION};\n}}\n"
+    corners = np.array([[-1.0, -1.0, 0.0, 1.0], [3.0, -1.0, 0.0, 1.0], [-1.0, 3.0, 0.0, 1.0]], np.float32)
+    mesh = Mesh({_POSITION: corners}, np.array([[0, 1, 2]], np.uint32))
+    return PictureProgram(vertex, fragment if version else head + fragment, size, mesh)
+
+
+def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
+    """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
+    running = machines(*TARGETS)
+    try:
+        drawn = [DrawnProgram(program) for program in programs]
+    except SssgenError as error:
+        return dict.fromkeys(TARGETS, Outcome(REFUSED, message(error)))
+    except Exception as error:  # a bug, which the table shows
+        return dict.fromkeys(TARGETS, crash(error))
+    results, expected = {}, None
+    try:
+        expected = [draw_written(program, running["gl"]) for program in programs]
+        results[AUTHOR] = _judged(judge(expected, None))
+    except SssgenError as error:
+        results[AUTHOR] = Outcome(REFUSED, message(error))
+    for name, target in TARGETS.items():
+        if name in running:
+            results[name] = _translated(drawn, target, running[name], lambda pictures: judge(pictures, expected))
+    return results
+
+
+def _translated(
+    programs: Sequence[DrawnProgram], target: str, machine: DrawingBackend, judge: Callable[[Sequence[Array]], str]
+) -> Outcome:
+    """The outcome of the translations for a target on a back end."""
+    try:
+        for program in programs:
+            program.translation(target)
+    except SssgenError as error:
+        return Outcome(REFUSED, message(error))
+    except Exception as error:
+        return crash(error)
+    try:
+        return _judged(judge([program.draw(target, machine) for program in programs]))
+    except SssgenError as error:
+        return Outcome(INVALID, message(error))
+
+
+def _judged(wrong: str) -> Outcome:
+    return Outcome(WRONG if wrong else RIGHT, wrong)
+
+
+class DrawnProgram:
+    """A program on the back ends. Raises SssgenError where the front end refuses it."""
+
+    def __init__(self, program: PictureProgram) -> None:
+        self.program = program
+        self.vertex, self.fragment = (
+            Source(load_glsl_text(text, f"{_NAME}.{ending}").module)
+            for text, ending in ((program.vertex, "vert"), (program.fragment, "frag"))
+        )
+        self.translations: dict[tuple[str, str], TranslatedProgram] = {}
+
+    def translation(self, target: str, rows: str = ROWS[0]) -> TranslatedProgram:
+        """The program for a target. Raises SssgenError where it cannot be translated."""
+        if (target, rows) not in self.translations:
+            self.translations[target, rows] = transpile_stages(self.vertex, self.fragment, target, _NAME, rows=rows)
+        return self.translations[target, rows]
+
+    def draw(self, target: str, machine: DrawingBackend) -> Array:
+        """The picture of a translation. Raises SssgenError where a compiler refuses the text."""
+        files = self.translation(target).files
+        # HLSL is drawn in OpenGL, where the vertex stage need not turn the picture
+        vertex_files = self.translation(target, ROWS[1]).files if target == "hlsl" else files
+        reflection: ProgramReflection = json.loads(files[f"{_NAME}.program.json"])
+        stages = [
+            Stage(Text(texts[reflection["stages"][kind]["file"]]), reflection["stages"][kind]["entry"] or "main")
+            for kind, texts in (("fragment", files), ("vertex", vertex_files))
+        ]
+        renames = {old: new for stage in reflection["renames"].values() for old, new in stage.items()}
+        instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
+
+        def shown(source: str) -> str:
+            """The name in the text."""
+            block, dot, member = source.partition(".")
+            source = f"{instances.get(block, block)}{dot}{member}"
+            name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
+            return renames.get(name, name)
+
+        numbers = {uniform["name"]: self.numbers(uniform) for uniform in reflection["uniforms"]}
+        blocks, values = {}, {}
+        if block := reflection["uniform_block"]:
+            data = material_block(-(-block["size"] // 16) * 16, reflection["uniforms"], numbers)
+            blocks["Material"] = Block(data, Place(block["group"], block["binding"]))
+        else:
+            values = {shown(name): value for name, value in numbers.items()}
+        attributes = {
+            f"ATTR{each['location']}" if target == "hlsl" else shown(each["name"]):
+            self.program.mesh.attributes[each["name"]] for each in reflection["attributes"]
+        }  # fmt: skip
+        textures = {
+            shown(texture["name"]): Bound(self.program.textures[texture["name"]], _place(texture, target))
+            for texture in reflection["textures"]
+        }
+        drawing = Drawing(self.program.size, stages[0], stages[1], textures=textures, blocks=blocks, values=values)
+        return _draw(drawing, attributes, self.program.mesh, machine)
+
+    def numbers(self, uniform: ProgramUniform) -> Array:
+        """The numbers of a uniform, (elements, components)."""
+        type_ = BY_NAME[uniform["type"]]
+        if "block" in uniform:
+            return np.array([*_in_block(uniform, self.program.blocks[uniform["block"]["name"]])])
+        elements = []
+        loose = uniform["name"].count("[]")
+        for indices in product(*map(range, uniform["lengths"][:loose])):
+            name = uniform["name"]
+            for index in indices:
+                name = name.replace("[]", f"[{index}]", 1)
+            elements.append(np.asarray(self.program.uniforms[name]).reshape(-1, components(type_)))
+        return np.concatenate(elements).astype(_DTYPES[kind_of(type_)])
+
+
+def draw_written(program: PictureProgram, machine: DrawingBackend) -> Array:
+    """The picture of the author's text in OpenGL's driver. Raises SssgenError where it refuses the text."""
+    fragment, vertex = (Stage(Text(for_driver(text))) for text in (program.fragment, program.vertex))
+    textures = {name: Bound(texture, Place(0, 0)) for name, texture in program.textures.items()}
+    blocks = {name: Block(data.ljust(-(-len(data) // 16) * 16 + 256, b"\0"), Place(0, 0))
+              for name, data in program.blocks.items()}  # fmt: skip
+    drawing = Drawing(program.size, fragment, vertex, textures=textures, blocks=blocks, values=program.uniforms)
+    return _draw(drawing, program.mesh.attributes, program.mesh, machine)
+
+
+def for_driver(text: str) -> str:
+    """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140."""
+    text = _BLOCK.sub(lambda match: f"layout(std140{_opengl(match[1])}){match[2]}", text)
+    text = _LAYOUT.sub(lambda match: f"layout({_opengl(match[1])[2:]})", text)
+    return text if "#version" in text else f"#version 100\n{text}"
+
+
+def _opengl(layout: str) -> str:
+    """A layout's words for OpenGL, each after a comma."""
+    words = [word.strip() for word in layout.split(",")]
+    return "".join(f", {word}" for word in words if not re.match(r"set\b|push_constant|std140", word))
+
+
+def _draw(drawing: Drawing, attributes: Mapping[str, Array], mesh: Mesh, machine: DrawingBackend) -> Array:
+    """Draws the mesh with those attributes, into floats."""
+    places, end = {}, 0
+    for name, array in attributes.items():
+        places[name] = (end, array.shape[1])
+        end += array.shape[1]
+    vertices = np.concatenate([*attributes.values()], axis=1)
+    return machine.draw(drawing._replace(floats=True, vertices=vertices, triangles=mesh.triangles, attributes=places))
+
+
+def _place(texture: ProgramTexture, target: str) -> Place:
+    """Where a texture is bound."""
+    binding = texture["binding"]
+    if target != "wgsl" or binding is None:
+        return Place(0, 0)
+    sampler = int(binding["sampler"]) if texture["sampler"] else -1
+    return Place(int(binding["group"]), int(binding["texture"]), sampler)
+
+
+def _in_block(uniform: ProgramUniform, data: bytes) -> Iterator[Array]:
+    """The elements of a uniform in a block of the source."""
+    type_, place = BY_NAME[uniform["type"]], uniform["block"]
+    columns = type_.columns if isinstance(type_, Matrix) else 1
+    shape = (columns, components(type_) // columns)
+    shape = shape[::-1] if place["row_major"] else shape
+    dtype = _DTYPES[kind_of(type_)]
+    for indices in product(*map(range, uniform["lengths"])):
+        start = place["offset"] + sum(i * stride for i, stride in zip(indices, place["strides"], strict=True))
+        lines: list[Array] = [
+            np.frombuffer(data[at : at + 4 * shape[1]].ljust(4 * shape[1], b"\0"), dtype)
+            for at in (start + line * place["matrix_stride"] for line in range(shape[0]))
+        ]
+        element = np.array(lines)
+        yield (element.T if place["row_major"] else element).reshape(-1)
