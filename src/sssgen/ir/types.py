@@ -147,6 +147,15 @@ def components(type: Type) -> int:
     return 0
 
 
+def component_kinds(type: Type) -> list[str]:
+    """The kind of each of these scalars, in their order."""
+    if isinstance(type, Array):
+        return component_kinds(type.element) * type.length
+    if isinstance(type, Struct):
+        return [kind for field in type.fields for kind in component_kinds(field.type)]
+    return [kind_of(type)] * components(type)
+
+
 def column_size(type: Type) -> int:
     """How many components a column of a matrix has; of a scalar or vector: how many itself has."""
     return type.rows if isinstance(type, Matrix) else components(type)
