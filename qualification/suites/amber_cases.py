@@ -153,7 +153,7 @@ def packed(type_: str, std140: bool, numbers: list[str]) -> bytes:
     step = 4 if std140 and (columns > 1 or type_.endswith("[]")) else {3: 4}.get(rows, rows)
     data: Any = np.zeros((len(lines), step), dtype)
     data[:, :rows] = lines
-    return data.tobytes()
+    return bytes(data.tobytes())
 
 
 def _script(name: str, text: str) -> Case:

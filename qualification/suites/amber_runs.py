@@ -10,7 +10,8 @@ import numpy as np
 from qualification.suites.amber_cases import PUSH, Case, Expectation, Pipeline
 from qualification.suites.machines import FRONT, machines
 from qualification.suites.outcomes import SKIPPED, Outcome, Result
-from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment, outcomes
+from qualification.suites.picture_outcomes import Drawn, outcomes
+from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment
 from sssgen.run.backends import Array
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -42,12 +43,12 @@ def run_case(case: Case) -> Result:
         else:
             programs[pipeline.target] = program
 
-    def judge(pictures: Sequence[Array], _: Sequence[Array] | None, step: int = 1) -> str:
-        drawn = {
+    def judge(drawn: Drawn, _: Drawn | None) -> str:
+        pictures = {
             target: colors(picture, "discard" in program.fragment)
-            for (target, program), picture in zip(programs.items(), pictures, strict=True)
+            for (target, program), picture in zip(programs.items(), drawn.pictures, strict=True)
         }
-        return next((text for expect in case.expects if (text := mismatch(expect, drawn, step))), "")
+        return next((text for expect in case.expects if (text := mismatch(expect, pictures, drawn.known))), "")
 
     return Result(case.name, "pictures", outcomes([*programs.values()], judge))
 
@@ -90,27 +91,23 @@ def colors(picture: Array, discards: bool = False) -> Array:
     return np.where(empty, _OPAQUE_BLACK, result)
 
 
-def mismatch(expect: Expectation, pictures: Mapping[str, Array], step: int) -> str:
-    """What is not as expected; '' where all is. Of a picture, each `step`-th pixel of both axes is known."""
+def mismatch(expect: Expectation, pictures: Mapping[str, Array], known: Array) -> str:
+    """What is not as expected of the pixels that are known; '' where all is."""
     picture = pictures[expect.buffer]
     if expect.other:
-        apart = histogram_distance(picture, pictures[expect.other])
+        apart = histogram_distance(picture[known], pictures[expect.other][known])
         return "" if apart <= expect.values[0] else f"the histograms are {apart:.3g} apart"
-    x, y, width, height = (-(-number // step) for number in expect.place)
-    count = len(expect.values)
-    region = picture[y : y + height, x : x + width, :count]
-    wrong = np.argwhere((region != np.array(expect.values)).any(axis=-1))
-    if not len(wrong):
-        return ""
-    row, column = wrong[0]
-    return f"{len(wrong)} of {region[..., 0].size} pixels; the first is {region[row, column].tolist()}"
+    x, y, width, height = expect.place
+    region = (slice(y, y + height), slice(x, x + width))
+    pixels = picture[region][known[region]][:, : len(expect.values)]
+    wrong = pixels[(pixels != np.array(expect.values)).any(axis=-1)]
+    return f"{len(wrong)} of {len(pixels)} pixels; the first is {wrong[0].tolist()}" if len(wrong) else ""
 
 
 def histogram_distance(first: Array, second: Array) -> float:
-    """The largest distance of the channels' histograms: the work of moving one onto the other."""
+    """The largest distance of the histograms of two lists of colors: the work of moving one onto the other."""
     distances = []
     for channel in range(4):
-        parts = [np.bincount(picture[..., channel].ravel(), minlength=256) / picture[..., 0].size
-                 for picture in (first, second)]  # fmt: skip
+        parts = [np.bincount(colors[:, channel], minlength=256) / len(colors) for colors in (first, second)]
         distances.append(float(np.abs(np.cumsum(parts[0] - parts[1])).sum() / 256.0))
     return max(distances)

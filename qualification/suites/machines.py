@@ -18,12 +18,17 @@ TITLES = {
 AUTHOR = "driver"
 """The driver with the author's own text: what it does wrong, no translation is blamed for."""
 FRONT = "front end"
+SECONDS = 12.0
+"""How long one picture may take."""
 
 
 @functools.cache
 def machines(*names: str) -> dict[str, BackendProcess]:
     """The back ends of this process, which end with it; without those that this machine lacks."""
-    return _open.enter_context(start_machines(names)).running
+    running = _open.enter_context(start_machines(names)).running
+    for machine in running.values():
+        machine.limit_time(SECONDS)
+    return running
 
 
 _open = ExitStack()

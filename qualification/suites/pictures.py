@@ -7,37 +7,31 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
-from qualification.suites.machines import AUTHOR, crash, machines, message
-from qualification.suites.outcomes import INVALID, REFUSED, RIGHT, WRONG, Outcome
 from sssgen.ir.types import BY_NAME, Matrix, components, kind_of
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.two_stages import Source, TranslatedProgram, transpile_stages
 from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, Text
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.render.shell_values import material_block
-from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.program_reflection import ROWS
 from sssgen.targets.reflection_record import ProgramReflection, ProgramTexture, ProgramUniform
 from sssgen.targets.runtime.numpy_textures import Texture
 
-TARGETS = {
-    "gl": "glsl-330", "gl-es": "glsl-es-300", "webgpu": "wgsl", "browser": "wgsl", "hlsl": "hlsl",
-}  # fmt: skip
-"""The back ends that draw, and the target of each."""
-_DTYPES: dict[str, type] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
+DTYPES: dict[str, type] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
 _BLOCK = re.compile(r"layout\s*\(([^()]*)\)(\s*uniform\s+\w+\s*\{)")
 _LAYOUT = re.compile(r"layout\s*\(([^()]*\bset\b[^()]*)\)")
 _INSTANCE = re.compile(r"\buniform\s+(\w+)\s*\{[^{}]*\}\s*(\w+)")
-_NAME = "case"
-_POSITION = "picture_position"
+_VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", re.MULTILINE)
 _OLD = ("", "100", "100 es", "110", "120")
 """The versions that have attributes."""
+_NAME = "case"
+_POSITION = "picture_position"
 
 
 class Mesh(NamedTuple):
@@ -62,14 +56,15 @@ class PictureProgram(NamedTuple):
     """The author's uniform blocks by name, in the layout std140."""
     textures: Mapping[str, Texture] = {}
 
-
-Judge: TypeAlias = Callable[[Sequence[Array], Sequence[Array] | None], str]
-"""What is wrong with the pictures of a case's programs, beside those of the driver; '' where nothing is."""
+    @property
+    def few(self) -> PictureProgram | None:
+        """The same program, drawn at `places` alone; None where it has a vertex shader of its author."""
+        return self._replace(mesh=_at_places(self.size)) if _POSITION in self.mesh.attributes else None
 
 
 def of_fragment(fragment: str, size: tuple[int, int]) -> PictureProgram:
     """The program of a fragment shader that covers the picture and reads no values of a vertex shader."""
-    version = re.search(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", fragment, re.MULTILINE)
+    version = _VERSION.search(fragment)
     number = version[1] if version else ""
     head = f"#version {number or '100'}\n"
     word = "attribute" if number in _OLD else "in"
@@ -79,50 +74,29 @@ def of_fragment(fragment: str, size: tuple[int, int]) -> PictureProgram:
     return PictureProgram(vertex, fragment if version else head + fragment, size, mesh)
 
 
-def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
-    """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
-    running = machines(*TARGETS)
-    try:
-        drawn = [DrawnProgram(program) for program in programs]
-    except SssgenError as error:
-        return dict.fromkeys(TARGETS, Outcome(REFUSED, message(error)))
-    except Exception as error:  # a bug, which the table shows
-        return dict.fromkeys(TARGETS, crash(error))
-    results, expected = {}, None
-    try:
-        expected = [draw_written(program, running["gl"]) for program in programs]
-        results[AUTHOR] = _judged(judge(expected, None))
-    except SssgenError as error:
-        results[AUTHOR] = Outcome(REFUSED, message(error))
-    for name, target in TARGETS.items():
-        if name in running:
-            results[name] = _translated(drawn, target, running[name], lambda pictures: judge(pictures, expected))
-    return results
+def places(size: tuple[int, int]) -> Array:
+    """(height, width): whether a pixel is among those to draw where all take too long, blocks of 4 by 4."""
+    known = np.zeros(size[::-1], bool)
+    rows, columns = ({0, side // 8 * 4, max(side - 4, 0)} for side in size[::-1])
+    for row, column in product(rows, columns):
+        known[row : row + 4, column : column + 4] = True
+    return known
 
 
-def _translated(
-    programs: Sequence[DrawnProgram], target: str, machine: DrawingBackend, judge: Callable[[Sequence[Array]], str]
-) -> Outcome:
-    """The outcome of the translations for a target on a back end."""
-    try:
-        for program in programs:
-            program.translation(target)
-    except SssgenError as error:
-        return Outcome(REFUSED, message(error))
-    except Exception as error:
-        return crash(error)
-    try:
-        return _judged(judge([program.draw(target, machine) for program in programs]))
-    except SssgenError as error:
-        return Outcome(INVALID, message(error))
+def _at_places(size: tuple[int, int]) -> Mesh:
+    """A square for each of the places."""
+    y, x = np.nonzero(places(size))
+    corners = np.stack([np.stack([x + i, y + j], axis=-1) for i, j in ((0, 0), (1, 0), (0, 1), (1, 1))], axis=1)
+    positions = np.zeros((*corners.shape[:2], 4), np.float32)
+    positions[..., :2] = 2.0 * corners / np.array(size) - 1.0
+    positions[..., 3] = 1.0
+    first = 4 * np.arange(len(x))[:, None]
+    triangles = np.concatenate([first + np.array(corner) for corner in ([0, 1, 2], [1, 3, 2])])
+    return Mesh({_POSITION: positions.reshape(-1, 4)}, triangles)
 
 
-def _judged(wrong: str) -> Outcome:
-    return Outcome(WRONG if wrong else RIGHT, wrong)
-
-
-class DrawnProgram:
-    """A program on the back ends. Raises SssgenError where the front end refuses it."""
+class Translations:
+    """The translations of a program. Raises SssgenError where the front end refuses it."""
 
     def __init__(self, program: PictureProgram) -> None:
         self.program = program
@@ -130,51 +104,60 @@ class DrawnProgram:
             Source(load_glsl_text(text, f"{_NAME}.{ending}").module)
             for text, ending in ((program.vertex, "vert"), (program.fragment, "frag"))
         )
-        self.translations: dict[tuple[str, str], TranslatedProgram] = {}
+        self.translated: dict[tuple[str, str], TranslatedProgram] = {}
 
     def translation(self, target: str, rows: str = ROWS[0]) -> TranslatedProgram:
         """The program for a target. Raises SssgenError where it cannot be translated."""
-        if (target, rows) not in self.translations:
-            self.translations[target, rows] = transpile_stages(self.vertex, self.fragment, target, _NAME, rows=rows)
-        return self.translations[target, rows]
+        if (target, rows) not in self.translated:
+            self.translated[target, rows] = transpile_stages(self.vertex, self.fragment, target, _NAME, rows=rows)
+        return self.translated[target, rows]
 
-    def draw(self, target: str, machine: DrawingBackend) -> Array:
+    def reflection(self, target: str) -> ProgramReflection:
+        """What a translation reads."""
+        reflection: ProgramReflection = json.loads(self.translation(target).files[f"{_NAME}.program.json"])
+        return reflection
+
+    def draw(self, target: str, machine: DrawingBackend, mesh: Mesh) -> Array:
         """The picture of a translation. Raises SssgenError where a compiler refuses the text."""
-        files = self.translation(target).files
+        files, reflection = self.translation(target).files, self.reflection(target)
         # HLSL is drawn in OpenGL, where the vertex stage need not turn the picture
         vertex_files = self.translation(target, ROWS[1]).files if target == "hlsl" else files
-        reflection: ProgramReflection = json.loads(files[f"{_NAME}.program.json"])
-        stages = [
+        fragment, vertex = (
             Stage(Text(texts[reflection["stages"][kind]["file"]]), reflection["stages"][kind]["entry"] or "main")
             for kind, texts in (("fragment", files), ("vertex", vertex_files))
-        ]
-        renames = {old: new for stage in reflection["renames"].values() for old, new in stage.items()}
-        instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
-
-        def shown(source: str) -> str:
-            """The name in the text."""
-            block, dot, member = source.partition(".")
-            source = f"{instances.get(block, block)}{dot}{member}"
-            name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
-            return renames.get(name, name)
-
+        )
+        names = self.names(reflection)
         numbers = {uniform["name"]: self.numbers(uniform) for uniform in reflection["uniforms"]}
         blocks, values = {}, {}
         if block := reflection["uniform_block"]:
             data = material_block(-(-block["size"] // 16) * 16, reflection["uniforms"], numbers)
             blocks["Material"] = Block(data, Place(block["group"], block["binding"]))
         else:
-            values = {shown(name): value for name, value in numbers.items()}
+            values = {names(name): value for name, value in numbers.items()}
         attributes = {
-            f"ATTR{each['location']}" if target == "hlsl" else shown(each["name"]):
-            self.program.mesh.attributes[each["name"]] for each in reflection["attributes"]
-        }  # fmt: skip
+            f"ATTR{each['location']}" if target == "hlsl" else names(each["name"]): mesh.attributes[each["name"]]
+            for each in reflection["attributes"]
+        }
         textures = {
-            shown(texture["name"]): Bound(self.program.textures[texture["name"]], _place(texture, target))
+            names(texture["name"]): Bound(self.program.textures[texture["name"]], _place(texture, target))
             for texture in reflection["textures"]
         }
-        drawing = Drawing(self.program.size, stages[0], stages[1], textures=textures, blocks=blocks, values=values)
-        return _draw(drawing, attributes, self.program.mesh, machine)
+        size = self.program.size
+        drawing = Drawing(size, fragment, vertex, textures=textures, blocks=blocks, values=values)
+        return _draw(drawing, attributes, mesh, machine)
+
+    def names(self, reflection: ProgramReflection) -> Callable[[str], str]:
+        """The function from a name in the source to that in the texts."""
+        renames = {old: new for stage in reflection["renames"].values() for old, new in stage.items()}
+        instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
+
+        def shown(source: str) -> str:
+            block, dot, member = source.partition(".")
+            source = f"{instances.get(block, block)}{dot}{member}"
+            name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
+            return renames.get(name, name)
+
+        return shown
 
     def numbers(self, uniform: ProgramUniform) -> Array:
         """The numbers of a uniform, (elements, components)."""
@@ -182,13 +165,13 @@ class DrawnProgram:
         if "block" in uniform:
             return np.array([*_in_block(uniform, self.program.blocks[uniform["block"]["name"]])])
         elements = []
-        loose = uniform["name"].count("[]")
-        for indices in product(*map(range, uniform["lengths"][:loose])):
+        outer = uniform["name"].count("[]")
+        for indices in product(*map(range, uniform["lengths"][:outer])):
             name = uniform["name"]
             for index in indices:
                 name = name.replace("[]", f"[{index}]", 1)
             elements.append(np.asarray(self.program.uniforms[name]).reshape(-1, components(type_)))
-        return np.concatenate(elements).astype(_DTYPES[kind_of(type_)])
+        return np.concatenate(elements).astype(DTYPES[kind_of(type_)])
 
 
 def draw_written(program: PictureProgram, machine: DrawingBackend) -> Array:
@@ -205,7 +188,7 @@ def for_driver(text: str) -> str:
     """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140."""
     text = _BLOCK.sub(lambda match: f"layout(std140{_opengl(match[1])}){match[2]}", text)
     text = _LAYOUT.sub(lambda match: f"layout({_opengl(match[1])[2:]})", text)
-    return text if "#version" in text else f"#version 100\n{text}"
+    return text if _VERSION.search(text) else f"#version 100\n{text}"
 
 
 def _opengl(layout: str) -> str:
@@ -216,12 +199,12 @@ def _opengl(layout: str) -> str:
 
 def _draw(drawing: Drawing, attributes: Mapping[str, Array], mesh: Mesh, machine: DrawingBackend) -> Array:
     """Draws the mesh with those attributes, into floats."""
-    places, end = {}, 0
+    columns, end = {}, 0
     for name, array in attributes.items():
-        places[name] = (end, array.shape[1])
+        columns[name] = (end, array.shape[1])
         end += array.shape[1]
     vertices = np.concatenate([*attributes.values()], axis=1)
-    return machine.draw(drawing._replace(floats=True, vertices=vertices, triangles=mesh.triangles, attributes=places))
+    return machine.draw(drawing._replace(floats=True, vertices=vertices, triangles=mesh.triangles, attributes=columns))
 
 
 def _place(texture: ProgramTexture, target: str) -> Place:
@@ -239,7 +222,7 @@ def _in_block(uniform: ProgramUniform, data: bytes) -> Iterator[Array]:
     columns = type_.columns if isinstance(type_, Matrix) else 1
     shape = (columns, components(type_) // columns)
     shape = shape[::-1] if place["row_major"] else shape
-    dtype = _DTYPES[kind_of(type_)]
+    dtype = DTYPES[kind_of(type_)]
     for indices in product(*map(range, uniform["lengths"])):
         start = place["offset"] + sum(i * stride for i, stride in zip(indices, place["strides"], strict=True))
         lines: list[Array] = [
