@@ -8,6 +8,8 @@ from typing import NamedTuple
 class Capabilities(NamedTuple):
     """The capabilities of one language: `[capabilities]` of its descriptor. What is not declared is False."""
 
+    array_attributes: bool = False
+    """An attribute of a vertex shader may be an array."""
     array_constructors: bool = False
     """An array constructor is an expression, and a function may return an array."""
     bool_conversions: bool = False
@@ -22,6 +24,8 @@ class Capabilities(NamedTuple):
     """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
     discard_ends: bool = False
     """A discarded invocation ends; if not, it goes on as a helper, and returns where it is in a loop."""
+    dynamic_outputs: bool = False
+    """An index into an output of a fragment shader may be any expression; if not, it is constant."""
     dynamic_stores: bool = False
     """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
     early_returns: bool = False
@@ -86,6 +90,8 @@ class Capabilities(NamedTuple):
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False
     """A struct constructor is an expression."""
+    struct_uniforms: bool = False
+    """A uniform of a whole shader may be a struct; if not, each of its members is a uniform."""
     subset_varyings: bool = False
     """A fragment shader may have fewer inputs than the vertex shader has outputs."""
     swizzle_store: bool = False
