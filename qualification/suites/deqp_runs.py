@@ -6,20 +6,20 @@ import functools
 from collections.abc import Sequence
 from contextlib import ExitStack
 
+from qualification.suites.compiled_texts import TARGETS, crash, translated
 from qualification.suites.deqp_cases import BOTH, Case
 from qualification.suites.deqp_programs import Answer, CaseProgram, load_stage
-from qualification.suites.outcomes import ACCEPTED, CRASH, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
+from qualification.suites.outcomes import ACCEPTED, FRONT, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
 from sssgen.analyse.verify.machines import Machines, start_machines
+from sssgen.ir.nodes import Module
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import SssgenError
+from sssgen.targets import registry
 
 BACKENDS = {"numpy": "NumPy", "gl": "GLSL 3.30", "webgpu": "WGSL", "hlsl": "HLSL"}
 """The back ends that run values, and their titles."""
 AUTHOR = "driver"
 """The driver with the author's own text: what it does wrong, no translation is blamed for."""
-BUILT = ("wgsl", "hlsl", "glsl-330")
-"""The targets that programs of two stages are translated to."""
-FRONT = "front end"
 STAGES = ({BOTH}, {"vertex", "fragment"})
 
 
@@ -36,7 +36,7 @@ def run_case(case: Case) -> Result:
         return Result(case.name, "must fail", {FRONT: must_fail(case)})
     if case.values and BOTH in case.stages:
         return Result(case.name, "values", run_values(case))
-    return Result(case.name, "builds", {target: builds(case, target) for target in BUILT})
+    return Result(case.name, "builds", builds(case))
 
 
 def run_values(case: Case) -> dict[str, Outcome]:
@@ -47,7 +47,7 @@ def run_values(case: Case) -> dict[str, Outcome]:
     except SssgenError as error:
         return dict.fromkeys(BACKENDS, Outcome(REFUSED, _message(error)))
     except Exception as error:  # a bug, which the table shows
-        return dict.fromkeys(BACKENDS, _crash(error))
+        return dict.fromkeys(BACKENDS, crash(error))
     if program.skipped:
         return dict.fromkeys(BACKENDS, Outcome(SKIPPED, program.skipped))
     outcomes = {}
@@ -62,7 +62,7 @@ def run_values(case: Case) -> dict[str, Outcome]:
             except SssgenError as error:
                 outcomes[name] = Outcome(INVALID, _message(error))
             except Exception as error:
-                outcomes[name] = _crash(error)
+                outcomes[name] = crash(error)
     return outcomes
 
 
@@ -75,20 +75,25 @@ def must_fail(case: Case) -> Outcome:
     except SssgenError as error:
         return Outcome(RIGHT, _message(error))
     except Exception as error:
-        return _crash(error)
+        return crash(error)
     return Outcome(ACCEPTED)
 
 
-def builds(case: Case, target: str) -> Outcome:
-    """Whether the stages of a case become texts of a target."""
+def builds(case: Case) -> dict[str, Outcome]:
+    """Whether the stages of a case become texts of each target, which compilers accept."""
     try:
         vertex, fragment = (load_stage(case, stage) for stage in ("vertex", "fragment"))
-        transpile_stages(Source(vertex), Source(fragment), target, "case")
     except SssgenError as error:
-        return Outcome(REFUSED, _message(error))
+        return {FRONT: Outcome(REFUSED, _message(error))}
     except Exception as error:
-        return _crash(error)
-    return Outcome(RIGHT)
+        return {FRONT: crash(error)}
+    targets = [target for target in TARGETS if "vertex" in registry.load(target).files]
+    return {target: translated(_files, vertex, fragment, target) for target in targets}
+
+
+def _files(vertex: Module, fragment: Module, target: str) -> dict[str, str]:
+    """The emitted files of two stages."""
+    return transpile_stages(Source(vertex), Source(fragment), target, "case").files
 
 
 def _outcome(answer: Answer) -> Outcome:
@@ -97,10 +102,6 @@ def _outcome(answer: Answer) -> Outcome:
 
 def _message(error: SssgenError) -> str:
     return error.diagnostics[0].message
-
-
-def _crash(error: Exception) -> Outcome:
-    return Outcome(CRASH, f"{type(error).__name__}: {error}")
 
 
 _open = ExitStack()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import deqp_cases
+from qualification.suites import deqp_cases, text_folders
 
 
 class Case(Protocol):
@@ -43,15 +43,39 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
     return cases
 
 
+_DEQP = "qualification.suites.deqp_runs:run_cases"
+_TEXTS = "qualification.suites.text_cases:run_cases"
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
 SUITES = {
-    name: Suite(
-        *_VK_GL_CTS,
-        (f"data/{name}/shaders",),
-        "Apache-2.0",
-        deqp(f"data/{name}/shaders"),
-        "qualification.suites.deqp_runs:run_cases",
-    )
+    name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"), _DEQP)
     for name in ("gles2", "gles3", "gles31")
+} | {
+    "spirv-cross": Suite(
+        "KhronosGroup/SPIRV-Cross",
+        "6c09849fe88c",
+        ("shaders", "shaders-hlsl", "shaders-msl", "shaders-no-opt"),
+        "Apache-2.0",
+        text_folders.spirv_cross,
+        _TEXTS,
+    ),
+    "glslang": Suite(
+        "KhronosGroup/glslang", "90afccfbd49d", ("Test",), "BSD-3-Clause and others", text_folders.glslang, _TEXTS
+    ),
+    "naga-glsl": Suite(
+        "gfx-rs/wgpu",
+        "64a61ee5c695",
+        ("naga/tests/in/glsl",),
+        "MIT or Apache-2.0",
+        text_folders.naga,
+        _TEXTS,
+    ),
+    "lygia": Suite(
+        "patriciogonzalezvivo/lygia",
+        "370bb5081ddc",
+        (".",),
+        "Prosperity-3.0.0 or Patron",
+        text_folders.lygia,
+        _TEXTS,
+    ),
 }
 """Name → suite."""
