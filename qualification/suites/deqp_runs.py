@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
-from contextlib import ExitStack
 
-from qualification.suites.compiled_texts import TARGETS, crash, translated
+from qualification.suites.compiled_texts import crash
 from qualification.suites.deqp_cases import BOTH, Case
-from qualification.suites.deqp_programs import Answer, CaseProgram, load_stage
-from qualification.suites.outcomes import ACCEPTED, FRONT, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
-from sssgen.analyse.verify.machines import Machines, start_machines
-from sssgen.ir.nodes import Module
-from sssgen.pipeline.two_stages import Source, transpile_stages
+from qualification.suites.deqp_programs import Answer, CaseProgram, stage_text
+from qualification.suites.machines import AUTHOR, BACKENDS, machines
+from qualification.suites.outcomes import FRONT, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
+from qualification.suites.text_cases import TextCase, builds, must_fail
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import registry
 
-BACKENDS = {"numpy": "NumPy", "gl": "GLSL 3.30", "webgpu": "WGSL", "hlsl": "HLSL"}
-"""The back ends that run values, and their titles."""
-AUTHOR = "driver"
-"""The driver with the author's own text: what it does wrong, no translation is blamed for."""
 STAGES = ({BOTH}, {"vertex", "fragment"})
 
 
@@ -33,17 +25,17 @@ def run_case(case: Case) -> Result:
     if set(case.stages) not in STAGES or "pipeline_program" in case.requires:
         return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, f"it has the stages {', '.join(case.stages)}")})
     if case.expects.endswith("fail"):
-        return Result(case.name, "must fail", {FRONT: must_fail(case)})
+        return Result(case.name, "must fail", must_fail(text_case(case), case.expects != "compile_fail"))
     if case.values and BOTH in case.stages:
         return Result(case.name, "values", run_values(case))
-    return Result(case.name, "builds", builds(case))
+    return Result(case.name, "builds", builds(text_case(case)))
 
 
 def run_values(case: Case) -> dict[str, Outcome]:
     """The outcomes of a case with values."""
-    machines = _machines().running
+    running = machines().running
     try:
-        program = CaseProgram(case, machines)
+        program = CaseProgram(case, running)
     except SssgenError as error:
         return dict.fromkeys(BACKENDS, Outcome(REFUSED, _message(error)))
     except Exception as error:  # a bug, which the table shows
@@ -56,7 +48,7 @@ def run_values(case: Case) -> dict[str, Outcome]:
     except SssgenError as error:
         outcomes[AUTHOR] = Outcome(REFUSED, _message(error))
     for name in BACKENDS:
-        if name in machines:
+        if name in running:
             try:
                 outcomes[name] = _outcome(program.translation(name))
             except SssgenError as error:
@@ -66,34 +58,10 @@ def run_values(case: Case) -> dict[str, Outcome]:
     return outcomes
 
 
-def must_fail(case: Case) -> Outcome:
-    """Whether the front end, or the linker of two stages, refuses a case."""
-    try:
-        vertex, fragment = (load_stage(case, stage) for stage in ("vertex", "fragment"))
-        if case.expects != "compile_fail":
-            transpile_stages(Source(vertex), Source(fragment), "wgsl", "case")
-    except SssgenError as error:
-        return Outcome(RIGHT, _message(error))
-    except Exception as error:
-        return crash(error)
-    return Outcome(ACCEPTED)
-
-
-def builds(case: Case) -> dict[str, Outcome]:
-    """Whether the stages of a case become texts of each target, which compilers accept."""
-    try:
-        vertex, fragment = (load_stage(case, stage) for stage in ("vertex", "fragment"))
-    except SssgenError as error:
-        return {FRONT: Outcome(REFUSED, _message(error))}
-    except Exception as error:
-        return {FRONT: crash(error)}
-    targets = [target for target in TARGETS if "vertex" in registry.load(target).files]
-    return {target: translated(_files, vertex, fragment, target) for target in targets}
-
-
-def _files(vertex: Module, fragment: Module, target: str) -> dict[str, str]:
-    """The emitted files of two stages."""
-    return transpile_stages(Source(vertex), Source(fragment), target, "case").files
+def text_case(case: Case) -> TextCase:
+    """A case of two stages that is only translated and compiled."""
+    vertex, fragment = (stage_text(case, stage) for stage in ("vertex", "fragment"))
+    return TextCase(case.name, f"{case.name.rpartition('.')[2]}.frag", fragment, vertex)
 
 
 def _outcome(answer: Answer) -> Outcome:
@@ -102,12 +70,3 @@ def _outcome(answer: Answer) -> Outcome:
 
 def _message(error: SssgenError) -> str:
     return error.diagnostics[0].message
-
-
-_open = ExitStack()
-
-
-@functools.cache
-def _machines() -> Machines:
-    """The back ends of this process, which end with it."""
-    return _open.enter_context(start_machines(tuple(BACKENDS)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from qualification.suites.deqp_runs import AUTHOR, BACKENDS
 from qualification.suites.lenience import LENIENCE, class_of
+from qualification.suites.machines import AUTHOR, BACKENDS
 from qualification.suites.outcomes import ACCEPTED, FRONT, OUTCOMES, RIGHT, SKIPPED, Result
 from qualification.suites.sources import SUITES
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import deqp_cases, text_folders
+from qualification.suites import deqp_cases, piglit_shaders, piglit_vectors, text_folders
 
 
 class Case(Protocol):
@@ -46,6 +46,7 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
 _DEQP = "qualification.suites.deqp_runs:run_cases"
 _TEXTS = "qualification.suites.text_cases:run_cases"
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
+_PIGLIT = ("mesa3d/piglit", "5e97a3485e01")
 SUITES = {
     name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"), _DEQP)
     for name in ("gles2", "gles3", "gles31")
@@ -76,6 +77,14 @@ SUITES = {
         "Prosperity-3.0.0 or Patron",
         text_folders.lygia,
         _TEXTS,
+    ),
+    "piglit": Suite(*_PIGLIT, ("tests",), "MIT and others", piglit_shaders.cases, _TEXTS),
+    "piglit-vectors": Suite(
+        *_PIGLIT,
+        ("generated_tests",),
+        "MIT and others",
+        piglit_vectors.cases,
+        "qualification.suites.piglit_vectors:run_cases",
     ),
 }
 """Name → suite."""

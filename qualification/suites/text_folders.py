@@ -56,7 +56,7 @@ def lygia(root: Path) -> Iterator[TextCase]:
 def _case(suite: str, path: Path, root: Path) -> TextCase:
     text = _text(path)
     name = path.relative_to(root).as_posix()
-    return TextCase(f"{suite}/{name}", path.name, text, (str(path.parent),), skipped=unsayable(text))
+    return TextCase(f"{suite}/{name}", path.name, text, folders=(str(path.parent),), skipped=unsayable(text))
 
 
 def _text(path: Path) -> str:
