@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from qualification.suites.amber_cases import PUSH, Case, Expectation, Pipeline
-from qualification.suites.machines import FRONT, machines
-from qualification.suites.outcomes import SKIPPED, Outcome, Result
-from qualification.suites.picture_outcomes import Drawn, outcomes
+from qualification.suites.machines import drawing_machines
+from qualification.suites.outcomes import FRONT, SKIPPED, Outcome, Result
+from qualification.suites.picture_outcomes import TARGETS, Drawn, outcomes
 from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment
 from sssgen.run.backends import Array
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -38,7 +38,7 @@ def run_case(case: Case) -> Result:
     for pipeline in case.pipelines:
         program = program_of(pipeline, case.buffers, textures)
         if pipeline.target in bound:
-            picture = draw_written(program, machines("gl")["gl"])
+            picture = draw_written(program, drawing_machines(*TARGETS)["gl"])
             textures[pipeline.target] = Texture(colors(picture) / 255.0, "nearest")
         else:
             programs[pipeline.target] = program

@@ -7,7 +7,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from qualification.suites.machines import AUTHOR, crash, machines, message
+from qualification.suites.compiled_texts import crash
+from qualification.suites.machines import AUTHOR, drawing_machines
 from qualification.suites.outcomes import INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome
 from qualification.suites.pictures import Mesh, PictureProgram, Translations, draw_written, places
 from sssgen.run.backends import Array
@@ -18,6 +19,8 @@ TARGETS = {
     "gl": "glsl-330", "gl-es": "glsl-es-300", "webgpu": "wgsl", "browser": "wgsl", "hlsl": "hlsl",
 }  # fmt: skip
 """The back ends that draw, and the target of each."""
+DRAWN = {"gl-es": "GLSL ES 3.00", "browser": "WGSL, Tint"}
+"""The titles of those that draw only."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
 _SLOW = "did not finish within"
@@ -39,11 +42,11 @@ Judge: TypeAlias = Callable[[Drawn, Drawn | None], str]
 
 def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
     """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
-    running = machines(*TARGETS)
+    running = drawing_machines(*TARGETS)
     try:
         translations = [Translations(program) for program in programs]
     except SssgenError as error:
-        return dict.fromkeys(TARGETS, Outcome(REFUSED, message(error)))
+        return dict.fromkeys(TARGETS, Outcome(REFUSED, _message(error)))
     except Exception as error:  # a bug, which the table shows
         return dict.fromkeys(TARGETS, crash(error))
     results, expected, few = {}, None, False
@@ -72,7 +75,7 @@ def _outcome(
         for program in programs:
             program.translation(target)
     except SssgenError as error:
-        return Outcome(REFUSED, message(error))
+        return Outcome(REFUSED, _message(error))
     except Exception as error:
         return crash(error)
     try:
@@ -95,7 +98,7 @@ def _drawn(programs: Sequence[PictureProgram], draw: Callable[[int, Mesh], Array
             pictures = [draw(number, program.mesh) for number, program in enumerate(programs)]
             return Drawn(pictures, np.ones(size[::-1], bool))
         except SssgenError as error:
-            if _SLOW not in message(error) or None in sparse:
+            if _SLOW not in _message(error) or None in sparse:
                 raise
     pictures = [draw(number, program.mesh) for number, program in enumerate(sparse) if program is not None]
     return Drawn(pictures, places(size))
@@ -107,4 +110,8 @@ def _judged(wrong: str) -> Outcome:
 
 def _failed(error: SssgenError, outcome: str) -> Outcome:
     """The outcome of a drawing that failed: a driver on a processor may be too slow."""
-    return Outcome(SKIPPED if _SLOW in message(error) else outcome, message(error))
+    return Outcome(SKIPPED if _SLOW in _message(error) else outcome, _message(error))
+
+
+def _message(error: SssgenError) -> str:
+    return error.diagnostics[0].message

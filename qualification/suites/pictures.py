@@ -20,7 +20,7 @@ from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, Text
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.render.shell_values import material_block
 from sssgen.targets.program_reflection import ROWS
-from sssgen.targets.reflection_record import ProgramReflection, ProgramTexture, ProgramUniform
+from sssgen.targets.reflection_record import AttributeRecord, ProgramReflection, ProgramTexture, ProgramUniform
 from sssgen.targets.runtime.numpy_textures import Texture
 
 DTYPES: dict[str, type] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
@@ -41,6 +41,12 @@ class Mesh(NamedTuple):
     """By name: (vertices, components)."""
     triangles: Array
     """(count, 3)."""
+
+    def values(self, attribute: AttributeRecord) -> Array:
+        """The numbers of an attribute, or of one location of it; those of the mesh, or zeros."""
+        count = len(next(iter(self.attributes.values())))
+        zeros = np.zeros((count, components(BY_NAME[attribute["type"].partition("[")[0]])), np.float32)
+        return self.attributes.get(attribute["name"], zeros[:, :4])
 
 
 class PictureProgram(NamedTuple):
@@ -128,18 +134,24 @@ class Translations:
         )
         names = self.names(reflection)
         numbers = {uniform["name"]: self.numbers(uniform) for uniform in reflection["uniforms"]}
-        blocks, values = {}, {}
+        blocks, values = {}, dict[str, Array]()
         if block := reflection["uniform_block"]:
             data = material_block(-(-block["size"] // 16) * 16, reflection["uniforms"], numbers)
             blocks["Material"] = Block(data, Place(block["group"], block["binding"]))
         else:
-            values = {names(name): value for name, value in numbers.items()}
+            for uniform in reflection["uniforms"]:
+                flat = "block" in uniform or not re.search(r"[.\[]", uniform["name"])
+                own = numbers[uniform["name"]]
+                values |= {names(uniform["name"]): own} if flat else _elements(uniform, own)
         attributes = {
-            f"ATTR{each['location']}" if target == "hlsl" else names(each["name"]): mesh.attributes[each["name"]]
+            f"ATTR{each['location'] + part}" if target == "hlsl" else names(each["name"]) + "'" * part: mesh.values(
+                each
+            )
             for each in reflection["attributes"]
+            for part in range(each["locations"])
         }
         textures = {
-            names(texture["name"]): Bound(self.program.textures[texture["name"]], _place(texture, target))
+            names(texture["name"]): Bound(self.texture(texture), _place(texture, target))
             for texture in reflection["textures"]
         }
         size = self.program.size
@@ -147,31 +159,62 @@ class Translations:
         return _draw(drawing, attributes, mesh, machine)
 
     def names(self, reflection: ProgramReflection) -> Callable[[str], str]:
-        """The function from a name in the source to that in the texts."""
+        """The function from a name in the source to that in texts of GLSL."""
         renames = {old: new for stage in reflection["renames"].values() for old, new in stage.items()}
         instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
 
         def shown(source: str) -> str:
             block, dot, member = source.partition(".")
-            source = f"{instances.get(block, block)}{dot}{member}"
+            if block in instances:
+                source = f"{instances[block]}_{member}" if dot else source
             name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
             return renames.get(name, name)
 
         return shown
 
+    def texture(self, texture: ProgramTexture) -> Texture:
+        """A texture of the program; without one a texel."""
+        given = self.program.textures.get(texture["name"])
+        if given is not None:
+            return given
+        kind = {"depth": "float", "sint": "int", "uint": "uint"}.get(texture["sample_type"], "float")
+        dim, _, array = texture["dimension"].partition("-")
+        shape = (1,) * bool(array) + {"2d": (1, 1, 4), "3d": (1, 1, 1, 4), "cube": (6, 1, 1, 4)}[dim]
+        return Texture(
+            np.zeros(shape),
+            "nearest",
+            dim={"cube": "Cube"}.get(dim, dim.upper()),
+            layers=bool(array),
+            kind=kind,
+            compare=texture["sample_type"] == "depth",
+        )
+
     def numbers(self, uniform: ProgramUniform) -> Array:
         """The numbers of a uniform, (elements, components)."""
         type_ = BY_NAME[uniform["type"]]
         if "block" in uniform:
-            return np.array([*_in_block(uniform, self.program.blocks[uniform["block"]["name"]])])
-        elements = []
-        outer = uniform["name"].count("[]")
-        for indices in product(*map(range, uniform["lengths"][:outer])):
-            name = uniform["name"]
-            for index in indices:
-                name = name.replace("[]", f"[{index}]", 1)
-            elements.append(np.asarray(self.program.uniforms[name]).reshape(-1, components(type_)))
+            return np.array([*_in_block(uniform, self.program.blocks.get(uniform["block"]["name"], b""))])
+        count = int(np.prod(uniform["lengths"]))
+        zeros = np.zeros((count // len(_written_names(uniform)), components(type_)))
+        elements = [
+            np.asarray(self.program.uniforms.get(name, zeros)).reshape(zeros.shape) for name in _written_names(uniform)
+        ]
         return np.concatenate(elements).astype(DTYPES[kind_of(type_)])
+
+
+def _written_names(uniform: ProgramUniform) -> list[str]:
+    """The author's names of a uniform's elements: of each element of arrays of structs."""
+    names = []
+    for indices in product(*map(range, uniform["lengths"][: uniform["name"].count("[]")])):
+        places = iter(indices)
+        names.append(re.sub(r"\[\]", lambda _, places=places: f"[{next(places)}]", uniform["name"]))
+    return names
+
+
+def _elements(uniform: ProgramUniform, numbers: Array) -> dict[str, Array]:
+    """The numbers of members of structs, which GLSL keeps, by their names."""
+    names = _written_names(uniform)
+    return dict(zip(names, np.split(numbers, len(names)), strict=True))
 
 
 def draw_written(program: PictureProgram, machine: DrawingBackend) -> Array:
