@@ -196,7 +196,7 @@ def _floats(arg: object) -> bool:
 
 def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
     row = results[0][0].row
-    lanes_of_cases = [_lanes(case, actual) for case, actual in results]
+    lanes_of_cases = [lanes_of(case, actual) for case, actual in results]
     ulp = np.concatenate([lanes.ulp[lanes.measured] for lanes in lanes_of_cases])
     absolute = np.concatenate([lanes.absolute[lanes.measured] for lanes in lanes_of_cases])
     beyond = ulp > row.ulp
@@ -224,7 +224,7 @@ def _badness(row: Builtin, lanes: _Lanes) -> Array:
     return np.where(lanes.measured, size + 1e30 * wrong, 1e29 * lanes.flushed)
 
 
-def _lanes(case: Case, actual: Array) -> _Lanes:
+def lanes_of(case: Case, actual: Array) -> _Lanes:
     """The errors of one overload, lane by lane."""
     exact = kind_of(case.result) != "float"
     actual = np.broadcast_to(actual, (*actual.shape[:-1], case.lanes))

@@ -17,7 +17,6 @@ from sssgen.analyse.verify.verification import load
 from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import Type, components, kind_of, spell
-from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.evaluate.evaluation import shape_of
@@ -67,12 +66,6 @@ def stage_text(case: Case, stage: str) -> str:
     }
     text = _MARK.sub(lambda mark: marks.get(mark[1], ""), text)
     return text if case.version not in ("", "100 es") or "#version" in text else f"#version 100\n{text}"
-
-
-def load_stage(case: Case, stage: str) -> Module:
-    """The checked module of a stage. Raises SssgenError where the front end refuses it."""
-    text = stage_text(case, stage)
-    return load_glsl_text(text, f"{case.name.rpartition('.')[2]}.{'vert' if stage == 'vertex' else 'frag'}").module
 
 
 def function_text(case: Case) -> Plain:

@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
-from contextlib import ExitStack
 
+from qualification.suites.compiled_texts import crash
 from qualification.suites.deqp_cases import BOTH, Case
-from qualification.suites.deqp_programs import Answer, CaseProgram, load_stage
-from qualification.suites.outcomes import ACCEPTED, CRASH, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
-from sssgen.analyse.verify.machines import Machines, start_machines
-from sssgen.pipeline.two_stages import Source, transpile_stages
+from qualification.suites.deqp_programs import Answer, CaseProgram, stage_text
+from qualification.suites.machines import AUTHOR, BACKENDS, machines
+from qualification.suites.outcomes import FRONT, INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome, Result
+from qualification.suites.text_cases import TextCase, builds, must_fail
 from sssgen.support.diagnostics import SssgenError
 
-BACKENDS = {
-    "numpy": "NumPy", "gl": "GLSL 3.30", "gl-es": "GLSL ES 3.00", "webgpu": "WGSL, naga", "browser": "WGSL, Tint", "hlsl": "HLSL, DXC",
-    "metal": "Metal, stand-in",
-}
-"""The back ends that run values, and their titles."""
-AUTHOR = "driver"
-"""The driver with the author's own text: what it does wrong, no translation is blamed for."""
-BUILT = ("wgsl", "hlsl", "glsl-330")
-"""The targets that programs of two stages are translated to."""
-FRONT = "front end"
 STAGES = ({BOTH}, {"vertex", "fragment"})
 
 
@@ -36,21 +25,21 @@ def run_case(case: Case) -> Result:
     if set(case.stages) not in STAGES or "pipeline_program" in case.requires:
         return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, f"it has the stages {', '.join(case.stages)}")})
     if case.expects.endswith("fail"):
-        return Result(case.name, "must fail", {FRONT: must_fail(case)})
+        return Result(case.name, "must fail", must_fail(text_case(case), case.expects != "compile_fail"))
     if case.values and BOTH in case.stages:
         return Result(case.name, "values", run_values(case))
-    return Result(case.name, "builds", {target: builds(case, target) for target in BUILT})
+    return Result(case.name, "builds", builds(text_case(case)))
 
 
 def run_values(case: Case) -> dict[str, Outcome]:
     """The outcomes of a case with values."""
-    machines = _machines().running
+    running = machines().running
     try:
-        program = CaseProgram(case, machines)
+        program = CaseProgram(case, running)
     except SssgenError as error:
         return dict.fromkeys(BACKENDS, Outcome(REFUSED, _message(error)))
     except Exception as error:  # a bug, which the table shows
-        return dict.fromkeys(BACKENDS, _crash(error))
+        return dict.fromkeys(BACKENDS, crash(error))
     if program.skipped:
         return dict.fromkeys(BACKENDS, Outcome(SKIPPED, program.skipped))
     outcomes = {}
@@ -59,39 +48,20 @@ def run_values(case: Case) -> dict[str, Outcome]:
     except SssgenError as error:
         outcomes[AUTHOR] = Outcome(REFUSED, _message(error))
     for name in BACKENDS:
-        if name in machines:
+        if name in running:
             try:
                 outcomes[name] = _outcome(program.translation(name))
             except SssgenError as error:
                 outcomes[name] = Outcome(INVALID, _message(error))
             except Exception as error:
-                outcomes[name] = _crash(error)
+                outcomes[name] = crash(error)
     return outcomes
 
 
-def must_fail(case: Case) -> Outcome:
-    """Whether the front end, or the linker of two stages, refuses a case."""
-    try:
-        vertex, fragment = (load_stage(case, stage) for stage in ("vertex", "fragment"))
-        if case.expects != "compile_fail":
-            transpile_stages(Source(vertex), Source(fragment), "wgsl", "case")
-    except SssgenError as error:
-        return Outcome(RIGHT, _message(error))
-    except Exception as error:
-        return _crash(error)
-    return Outcome(ACCEPTED)
-
-
-def builds(case: Case, target: str) -> Outcome:
-    """Whether the stages of a case become texts of a target."""
-    try:
-        vertex, fragment = (load_stage(case, stage) for stage in ("vertex", "fragment"))
-        transpile_stages(Source(vertex), Source(fragment), target, "case")
-    except SssgenError as error:
-        return Outcome(REFUSED, _message(error))
-    except Exception as error:
-        return _crash(error)
-    return Outcome(RIGHT)
+def text_case(case: Case) -> TextCase:
+    """A case of two stages that is only translated and compiled."""
+    vertex, fragment = (stage_text(case, stage) for stage in ("vertex", "fragment"))
+    return TextCase(case.name, f"{case.name.rpartition('.')[2]}.frag", fragment, vertex)
 
 
 def _outcome(answer: Answer) -> Outcome:
@@ -100,16 +70,3 @@ def _outcome(answer: Answer) -> Outcome:
 
 def _message(error: SssgenError) -> str:
     return error.diagnostics[0].message
-
-
-def _crash(error: Exception) -> Outcome:
-    return Outcome(CRASH, f"{type(error).__name__}: {error}")
-
-
-_open = ExitStack()
-
-
-@functools.cache
-def _machines() -> Machines:
-    """The back ends of this process, which end with it."""
-    return _open.enter_context(start_machines(tuple(BACKENDS)))

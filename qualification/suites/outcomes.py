@@ -9,7 +9,7 @@ RIGHT, WRONG, INVALID, REFUSED, CRASH, ACCEPTED, SKIPPED = (
     "right", "wrong", "invalid", "refused", "crash", "accepted", "skipped",
 )  # fmt: skip
 OUTCOMES = {
-    RIGHT: "the values are as expected, both stages are translated, or what is invalid is refused",
+    RIGHT: "the values are as expected, all compilers accept the text, or what is invalid is refused",
     WRONG: "another value, and no message",
     INVALID: "a back end refuses the emitted text",
     REFUSED: "sssgen refuses a valid program, with a message",
@@ -18,6 +18,10 @@ OUTCOMES = {
     SKIPPED: "the runner cannot run the case: it needs stages or settings that no target has",
 }
 """Outcome → its meaning."""
+
+
+FRONT = "front end"
+"""In place of a back end: the front end alone."""
 
 
 class Outcome(NamedTuple):
@@ -37,3 +41,7 @@ class Result(NamedTuple):
     """`values`, `builds`, `must fail` or `skipped`"""
     outcomes: Mapping[str, Outcome]
     """By the name of the back end or of the target"""
+
+
+class SuiteFormatError(Exception):
+    """A file of a suite that is not as its reader expects."""

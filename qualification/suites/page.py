@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from qualification.suites.deqp_runs import AUTHOR, BACKENDS, FRONT
 from qualification.suites.lenience import LENIENCE, class_of
-from qualification.suites.outcomes import ACCEPTED, OUTCOMES, RIGHT, Result
+from qualification.suites.machines import AUTHOR, BACKENDS
+from qualification.suites.outcomes import ACCEPTED, FRONT, OUTCOMES, RIGHT, SKIPPED, Result
+from qualification.suites.picture_outcomes import DRAWN
 from qualification.suites.sources import SUITES
 
-_TITLES = {**BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
+_TITLES = {**DRAWN, **BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
 
 
 def table(results: Mapping[str, Sequence[Result]]) -> str:
@@ -47,7 +48,9 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
         "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs "
         "are compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only "
-        "has to build is translated with both of its stages; the texts are not compiled.", "",
+        "has to build is translated, with both of its stages where it has them, and each text is compiled: WGSL by "
+        "naga and Tint, HLSL by DXC and glslang, GLSL by the driver and glslang, kernels of Metal by g++ with a "
+        "stand-in for its library.", "",
         "## What is accepted and should not be", "",
         "| class | cases | why |", "|---|---:|---|",
         *lenience_rows(result for own in results.values() for result in own), "",
@@ -69,7 +72,7 @@ def problems(results: Iterable[Result]) -> list[str]:
     found: dict[tuple[str, str], list[str]] = {}
     for result in results:
         for name, outcome in result.outcomes.items():
-            if outcome.outcome not in (RIGHT, ACCEPTED, "skipped") and name != AUTHOR:
+            if outcome.outcome not in (RIGHT, ACCEPTED, SKIPPED) and name != AUTHOR:
                 found.setdefault((outcome.outcome, outcome.why.splitlines()[0][:120]), []).append(result.case)
     rows = sorted(found.items(), key=lambda item: (item[0][0], -len(item[1])))
     return ["| outcome | message | cases | such as |", "|---|---|---:|---|"] + [

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import deqp_cases
+from qualification.suites import amber_cases, deqp_cases, piglit_shaders, piglit_vectors, text_folders
 
 
 class Case(Protocol):
@@ -43,15 +43,57 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
     return cases
 
 
+def amber(root: Path) -> Iterator[amber_cases.Case]:
+    """The GraphicsFuzz cases of VK-GL-CTS."""
+    yield from map(amber_cases.read, sorted((root / _AMBER).glob("*.amber")))
+
+
+_AMBER = "external/vulkancts/data/vulkan/amber/graphicsfuzz"
+_DEQP = "qualification.suites.deqp_runs:run_cases"
+_TEXTS = "qualification.suites.text_cases:run_cases"
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
+_PIGLIT = ("mesa3d/piglit", "5e97a3485e01")
 SUITES = {
-    name: Suite(
-        *_VK_GL_CTS,
-        (f"data/{name}/shaders",),
-        "Apache-2.0",
-        deqp(f"data/{name}/shaders"),
-        "qualification.suites.deqp_runs:run_cases",
-    )
+    name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"), _DEQP)
     for name in ("gles2", "gles3", "gles31")
+} | {
+    "amber-graphicsfuzz": Suite(
+        *_VK_GL_CTS, (_AMBER,), "Apache-2.0", amber, "qualification.suites.amber_runs:run_cases"
+    ),
+    "spirv-cross": Suite(
+        "KhronosGroup/SPIRV-Cross",
+        "6c09849fe88c",
+        ("shaders", "shaders-hlsl", "shaders-msl", "shaders-no-opt"),
+        "Apache-2.0",
+        text_folders.spirv_cross,
+        _TEXTS,
+    ),
+    "glslang": Suite(
+        "KhronosGroup/glslang", "90afccfbd49d", ("Test",), "BSD-3-Clause and others", text_folders.glslang, _TEXTS
+    ),
+    "naga-glsl": Suite(
+        "gfx-rs/wgpu",
+        "64a61ee5c695",
+        ("naga/tests/in/glsl",),
+        "MIT or Apache-2.0",
+        text_folders.naga,
+        _TEXTS,
+    ),
+    "lygia": Suite(
+        "patriciogonzalezvivo/lygia",
+        "370bb5081ddc",
+        (".",),
+        "Prosperity-3.0.0 or Patron",
+        text_folders.lygia,
+        _TEXTS,
+    ),
+    "piglit": Suite(*_PIGLIT, ("tests",), "MIT and others", piglit_shaders.cases, _TEXTS),
+    "piglit-vectors": Suite(
+        *_PIGLIT,
+        ("generated_tests",),
+        "MIT and others",
+        piglit_vectors.cases,
+        "qualification.suites.piglit_vectors:run_cases",
+    ),
 }
 """Name → suite."""

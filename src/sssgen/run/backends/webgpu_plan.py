@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, Bound, Drawing
+from sssgen.run.backends.backend_interface import Array, Bound, Drawing
 from sssgen.targets.runtime.numpy_textures import Texture
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
@@ -60,24 +61,21 @@ class Plan(NamedTuple):
     vertices: bytes
     triangles: bytes
     """Indices as uint32; empty: three vertices without buffers."""
-
-
-STRIDE = 4 * VERTEX_SIZE
-"""Bytes of a vertex."""
-
-ATTRIBUTE_PLAN = [
-    {"format": f"float32x{size}", "offset": 4 * first, "shaderLocation": location}
-    for location, (first, size) in enumerate(ATTRIBUTES.values())
-]
-"""All attributes; a program may read fewer."""
+    vertex_code: str = ""
+    """The text of the vertex stage; '': `code` has both."""
+    attributes: Sequence[Mapping[str, Any]] = ()
+    """A program may read fewer."""
+    stride: int = 0
+    """Bytes of a vertex."""
 
 
 def plan(drawing: Drawing) -> Plan:
     """The plan of a drawing."""
     assert drawing.vertex is not None
     triangles = drawing.triangles
+    code, vertex_code = drawing.fragment.text.text, drawing.vertex.text.text
     return Plan(
-        drawing.fragment.text.text,
+        code,
         drawing.vertex.entry,
         drawing.fragment.entry,
         "rgba32float" if drawing.floats else "rgba32uint",
@@ -86,6 +84,12 @@ def plan(drawing: Drawing) -> Plan:
         [BlockPlan(block.place.group, block.place.binding, block.data) for block in drawing.blocks.values()],
         b"" if drawing.vertices is None else np.ascontiguousarray(drawing.vertices, np.float32).tobytes(),
         b"" if triangles is None else np.ascontiguousarray(triangles, np.uint32).tobytes(),
+        "" if vertex_code == code else vertex_code,
+        [
+            {"format": f"float32x{size}" if size > 1 else "float32", "offset": 4 * first, "shaderLocation": location}
+            for location, (first, size) in enumerate(drawing.attributes.values())
+        ],
+        4 * sum(size for _, size in drawing.attributes.values()),
     )
 
 

@@ -1,0 +1,113 @@
+"""Runs the GraphicsFuzz cases of VK-GL-CTS: their pictures have the colors, or the histograms, that they expect."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from qualification.suites.amber_cases import PUSH, Case, Expectation, Pipeline
+from qualification.suites.machines import drawing_machines
+from qualification.suites.outcomes import FRONT, SKIPPED, Outcome, Result
+from qualification.suites.picture_outcomes import TARGETS, Drawn, outcomes
+from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment
+from sssgen.run.backends import Array
+from sssgen.targets.runtime.numpy_textures import Texture
+
+_BOUND = re.compile(r"layout\s*\(([^()]*)\)\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s*(\{|\w+)")
+_NUMBER = re.compile(r"\b(set|binding)\s*=\s*(\d+)")
+_INPUT = re.compile(r"\bin\s+vec4\s+(\w+)\s*;")
+_OPAQUE_BLACK = np.array([0, 0, 0, 255])
+
+
+def run_cases(cases: Sequence[Case]) -> list[Result]:
+    """The results of cases, in their order."""
+    return [run_case(case) for case in cases]
+
+
+def run_case(case: Case) -> Result:
+    """The result of one case."""
+    if any("compute" in pipeline.stages for pipeline in case.pipelines):
+        return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, "it is a compute shader")})
+    if not all(pipeline.stages["fragment"] for pipeline in case.pipelines):
+        return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, "its GLSL is not in the file")})
+    bound = {buffer for pipeline in case.pipelines for buffer in pipeline.bound.values()}
+    textures: dict[str, Texture] = {}
+    programs: dict[str, PictureProgram] = {}
+    for pipeline in case.pipelines:
+        program = program_of(pipeline, case.buffers, textures)
+        if pipeline.target in bound:
+            picture = draw_written(program, drawing_machines(*TARGETS)["gl"])
+            textures[pipeline.target] = Texture(colors(picture) / 255.0, "nearest")
+        else:
+            programs[pipeline.target] = program
+
+    def judge(drawn: Drawn, _: Drawn | None) -> str:
+        pictures = {
+            target: colors(picture, "discard" in program.fragment)
+            for (target, program), picture in zip(programs.items(), drawn.pictures, strict=True)
+        }
+        return next((text for expect in case.expects if (text := mismatch(expect, pictures, drawn.known))), "")
+
+    return Result(case.name, "pictures", outcomes([*programs.values()], judge))
+
+
+def program_of(pipeline: Pipeline, buffers: Mapping[str, bytes], textures: Mapping[str, Texture]) -> PictureProgram:
+    """The program of a pipeline with what is bound to it."""
+    vertex, fragment = pipeline.stages["vertex"], pipeline.stages["fragment"]
+    program = of_fragment(fragment, pipeline.size)
+    if vertex:
+        match = _INPUT.search(vertex)
+        name = match[1] if match else ""
+        program = program._replace(vertex=vertex, mesh=grid(name, *map(int, pipeline.run[-2:])))
+    blocks, named_textures = {}, {}
+    for layout, name, after in _BOUND.findall(vertex + fragment):
+        numbers = dict(_NUMBER.findall(layout))
+        place = PUSH if PUSH in layout else f"{numbers.get('set', 0)}:{numbers.get('binding', 0)}"
+        buffer = pipeline.bound[place]
+        if after == "{":
+            blocks[name] = buffers[buffer]
+        else:
+            named_textures[after] = textures[buffer]
+    return program._replace(blocks=blocks, textures=named_textures)
+
+
+def grid(attribute: str, columns: int, rows: int) -> Mesh:
+    """A grid that covers the picture."""
+    y, x = np.mgrid[: rows + 1, : columns + 1]
+    corners = np.stack([2.0 * x / columns - 1.0, 2.0 * y / rows - 1.0, 0.0 * x, 0.0 * x + 1.0], axis=-1)
+    first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1, 1)
+    below = np.concatenate([first, first + 1, first + columns + 1], axis=1)
+    above = np.concatenate([first + 1, first + columns + 2, first + columns + 1], axis=1)
+    return Mesh({attribute: corners.reshape(-1, 4).astype(np.float32)}, np.concatenate([below, above]))
+
+
+def colors(picture: Array, discards: bool = False) -> Array:
+    """A picture in 8 bits; where nothing was drawn, opaque black, which is the clear color."""
+    with np.errstate(invalid="ignore"):
+        result: Array = np.rint(255.0 * np.clip(np.nan_to_num(picture), 0.0, 1.0)).astype(np.int64)
+    empty = discards & (picture == 0.0).all(axis=-1, keepdims=True)
+    return np.where(empty, _OPAQUE_BLACK, result)
+
+
+def mismatch(expect: Expectation, pictures: Mapping[str, Array], known: Array) -> str:
+    """What is not as expected of the pixels that are known; '' where all is."""
+    picture = pictures[expect.buffer]
+    if expect.other:
+        apart = histogram_distance(picture[known], pictures[expect.other][known])
+        return "" if apart <= expect.values[0] else f"the histograms are {apart:.3g} apart"
+    x, y, width, height = expect.place
+    region = (slice(y, y + height), slice(x, x + width))
+    pixels = picture[region][known[region]][:, : len(expect.values)]
+    wrong = pixels[(pixels != np.array(expect.values)).any(axis=-1)]
+    return f"{len(wrong)} of {len(pixels)} pixels; the first is {wrong[0].tolist()}" if len(wrong) else ""
+
+
+def histogram_distance(first: Array, second: Array) -> float:
+    """The largest distance of the histograms of two lists of colors: the work of moving one onto the other."""
+    distances = []
+    for channel in range(4):
+        parts = [np.bincount(colors[:, channel], minlength=256) / len(colors) for colors in (first, second)]
+        distances.append(float(np.abs(np.cumsum(parts[0] - parts[1])).sum() / 256.0))
+    return max(distances)
