@@ -113,8 +113,8 @@ class MemoryChecker:
             type_: Type = Array(inner, 0)
         else:
             type_ = array_type(context, base, lengths)
-        if _holds(type_, "bool") or isinstance(unnested(type_)[0], Sampler):
-            hint = "write uint, which is 0 or 1" if _holds(type_, "bool") else ""
+        if holds(type_, "bool") or isinstance(unnested(type_)[0], Sampler):
+            hint = "write uint, which is 0 or 1" if holds(type_, "bool") else ""
             held = "a bool" if hint else a_type(type_)
             raise context.fail(declarator.name.span, f"a storage buffer cannot hold {held}", hint)
         return type_
@@ -214,8 +214,9 @@ def _has_matrix(type_: Type) -> bool:
     return isinstance(innermost, Matrix)
 
 
-def _holds(type_: Type, kind: str) -> bool:
+def holds(type_: Type, kind: str) -> bool:
+    """Whether there are scalars of a kind in it."""
     innermost, _ = unnested(type_)
     if isinstance(innermost, Struct):
-        return any(_holds(field.type, kind) for field in innermost.fields)
+        return any(holds(field.type, kind) for field in innermost.fields)
     return getattr(innermost, "kind", "") == kind

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
 from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.memory_checker import holds
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.type_names import named_type
 from sssgen.lang.check.wording import a_type
@@ -58,8 +59,8 @@ class ShaderInterface:
             if type_ == VOID or isinstance(type_, Sampler):
                 hint = "write uniform before it" if isinstance(type_, Sampler) else ""
                 raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}", hint)
-            if not block and context.es >= 300 and storage == ("out" if self.vertex else "in"):
-                self.check_parts(type_, span)
+            if storage in ("in", "out") and isinstance(unnested(type_)[0], Struct):
+                self.check_struct(type_, storage, span, bool(block))
             value = None
             if declarator.value is not None:
                 value = self.initial_value(declarator.value, type_, quantity, name)
@@ -93,14 +94,22 @@ class ShaderInterface:
         if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
             raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
 
-    def check_parts(self, type_: Type, span: ir.Span) -> None:
-        """Reports a value between stages that GLSL ES does not pass because of what it is made of."""
+    def check_struct(self, type_: Type, storage: str, span: ir.Span, in_block: bool) -> None:
+        """Reports a struct that a stage cannot have as an input or output."""
+        context = self.context
+        if storage != ("out" if self.vertex else "in"):
+            what = "an attribute" if storage == "in" else "a colour"
+            raise context.fail(span, f"{what} cannot be {a_type(type_)}", "declare its members one by one")
+        if holds(type_, "bool"):
+            raise context.fail(span, "stages pass no bools", "make the member a float of 0 or 1")
+        if context.es < 300 or in_block:
+            return
         parts = [field.type for field in type_.fields] if isinstance(type_, Struct) else []
         parts += [type_.element] if isinstance(type_, Array) else []
         if any(isinstance(part, Struct | Array) for part in parts):
             message = f"GLSL ES does not pass {a_type(type_)} between stages"
             hint = "pass a struct alone, with neither structs nor arrays in it, or an array of numbers or vectors"
-            raise self.context.fail(span, message, hint)
+            raise context.fail(span, message, hint)
 
     def initial_value(self, value: s.Expression, type_: Type, quantity: str, name: str) -> ir.Expr:
         """The value of a variable before main()."""
