@@ -29,6 +29,8 @@ from sssgen.targets.runtime.numpy_textures import Texture
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 VERSIONS = ("450 core", "330 core", "300 es")
 """The versions to try, where the text has no `#version` or one before 3.30."""
+NEWEST = 450
+"""Drivers without a GPU, and those of macOS, have no later version: its texts are tried as the latest of `VERSIONS`."""
 
 
 class Inputs(NamedTuple):
@@ -98,7 +100,9 @@ class DrivenFunction:
     def original_of(self, written: Plain, inputs: Inputs) -> list[Array]:
         """The outputs of a text of the author, in the first version that the driver accepts."""
         number = written.version.split(" ")[0]
-        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else VERSIONS
+        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else list(VERSIONS)
+        if number and int(number) > NEWEST and not written.is_es:
+            versions.append(VERSIONS[0])
         refusals: list[SssgenError] = []
         for version in versions:
             try:

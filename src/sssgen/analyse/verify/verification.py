@@ -29,7 +29,8 @@ import numpy as np
 from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
 from sssgen.analyse.verify.driven_function import DrivenFunction, Inputs
 from sssgen.analyse.verify.input_search import FEW, Search
-from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.lane_interpreter import Run
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.machines import SECONDS, Machines, backends_of, start_machines
 from sssgen.analyse.verify.plain_inputs import Source, join, picture
@@ -364,7 +365,7 @@ class Case(DrivenFunction):
             lane -= count
         return ""
 
-    def noise(self, lanes: Array, draws: int, granted: bool) -> dict[str, Array]:
+    def noise(self, lanes: Array, draws: int, at_edges: bool, granted: bool) -> dict[str, Array]:
         """The largest movement that rounding explains, of each output in these lanes."""
         keys = [self.keys[probe.name] for probe in self.case.probes]
         parts: list[list[Array]] = []
@@ -373,7 +374,8 @@ class Case(DrivenFunction):
             count = next(iter(inputs.values.values())).shape[-1]
             own = lanes[(lanes >= start) & (lanes < start + count)] - start
             if len(own):
-                parts.append(noise(self.program, keys, inputs.values, inputs.textures, own, draws, granted, draws))
+                values, textures = inputs
+                parts.append(noise(self.program, keys, values, textures, own, draws, granted, draws, at_edges))
             start += count
         return {
             probe.output: np.concatenate([part[index] for part in parts])
