@@ -49,6 +49,7 @@ def test_translations_agree(name: str, verify: Callable[[str], ComputeReport]) -
     assert report.ok
     assert report.rounds == compute_verification.ROUNDS
     assert report.ordered == 0
+    assert report.as_json()["devices"]["gl"].startswith("OpenGL ")
     assert {each.deviation for each in report.differences.values()} == {0.0}
     assert set(report.differences) == {"glsl", "wgsl", "metal"}
 

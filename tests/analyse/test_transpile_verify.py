@@ -11,8 +11,9 @@ import pytest
 from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.machines import Machines
 from sssgen.analyse.verify.stage_variables import plain, without_functions
-from sssgen.analyse.verify.verification import Options, load, verify
+from sssgen.analyse.verify.verification import load, verify
 from sssgen.analyse.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.ir.nodes import Module
 from sssgen.ir.old_names import OLD_NAMES
 from sssgen.run.evaluate.deviation import GOAL

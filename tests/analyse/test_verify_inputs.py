@@ -9,8 +9,9 @@ import pytest
 
 from sssgen.analyse.verify import driven_function
 from sssgen.analyse.verify.machines import Machines
-from sssgen.analyse.verify.verification import Options, verify
+from sssgen.analyse.verify.verification import verify
 from sssgen.analyse.verify.verification_report import Coverage, Row
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.pipeline import compiler
 
 Verify = Callable[..., Row]

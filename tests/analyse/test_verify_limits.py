@@ -16,8 +16,9 @@ from sssgen.analyse.verify.rounded_floats import round_floats, seed_errors
 from sssgen.analyse.verify.rounding_limits import RoundingLimits
 from sssgen.analyse.verify.rounding_noise import RoundedRun
 from sssgen.analyse.verify.time_limit import TimeLimit, TimeOverError
-from sssgen.analyse.verify.verification import Options, load, verify
+from sssgen.analyse.verify.verification import load, verify
 from sssgen.analyse.verify.verification_report import Comparison, Report, Row
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.cli.main import main
 from sssgen.run.backends import Array
 
