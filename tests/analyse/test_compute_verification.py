@@ -24,10 +24,13 @@ START = "    uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;\n"
 
 
 class InThisProcess:
-    """A back end with the method of one in a process of its own."""
+    """A back end with the methods of one in a process of its own."""
 
     def __init__(self, backend: Backend) -> None:
         self.backend = backend
+
+    def device(self) -> str:
+        return self.backend.device()
 
     def apply(self, function: Callable[..., Any], *arguments: Any) -> Any:
         return function(self.backend, *arguments)
