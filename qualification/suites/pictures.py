@@ -204,11 +204,8 @@ class Translations:
 
 def _written_names(uniform: ProgramUniform) -> list[str]:
     """The author's names of a uniform's elements: of each element of arrays of structs."""
-    names = []
-    for indices in product(*map(range, uniform["lengths"][: uniform["name"].count("[]")])):
-        places = iter(indices)
-        names.append(re.sub(r"\[\]", lambda _, places=places: f"[{next(places)}]", uniform["name"]))
-    return names
+    lengths = uniform["lengths"][: uniform["name"].count("[]")]
+    return [uniform["name"].replace("[]", "[{}]").format(*indices) for indices in product(*map(range, lengths))]
 
 
 def _elements(uniform: ProgramUniform, numbers: Array) -> dict[str, Array]:
