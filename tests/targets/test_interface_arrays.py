@@ -1,4 +1,4 @@
-"""Arrays and integers in the interface of a stage: GLSL ES 3.00 has fewer of them, and programs find the others by their names."""
+"""Arrays, structs and integers in the interface of a stage: GLSL ES 3.00 has fewer of them, and programs name the rest."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class Slot(NamedTuple):
 
 
 def interpolation(variable: Variable) -> str:
-    """How a variable is interpolated between vertices: flat, noperspective, centroid or '': integers always are flat."""
+    """How a variable is interpolated: flat, noperspective, centroid or ''; integers always are flat."""
     return "flat" if kind_of(unnested(variable.type)[0]) in ("int", "uint") else variable.interpolation
 
 
