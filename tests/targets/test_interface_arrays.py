@@ -1,4 +1,4 @@
-"""Arrays, structs and integers in the interface of a stage: GLSL ES 3.00 has fewer of them, and programs name the rest."""
+"""Arrays, structs and integers in the interface of a stage: GLSL ES 3.00 has fewer, and programs name the rest."""
 
 from __future__ import annotations
 
