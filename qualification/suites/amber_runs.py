@@ -10,7 +10,7 @@ import numpy as np
 from qualification.suites.amber_cases import PUSH, Case, Expectation, Pipeline
 from qualification.suites.machines import drawing_machines
 from qualification.suites.outcomes import FRONT, SKIPPED, Outcome, Result
-from qualification.suites.picture_outcomes import TARGETS, Drawn, outcomes
+from qualification.suites.picture_outcomes import TARGETS, Drawn, colors, outcomes
 from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment
 from sssgen.run.backends import Array
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -18,7 +18,6 @@ from sssgen.targets.runtime.numpy_textures import Texture
 _BOUND = re.compile(r"layout\s*\(([^()]*)\)\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s*(\{|\w+)")
 _NUMBER = re.compile(r"\b(set|binding)\s*=\s*(\d+)")
 _INPUT = re.compile(r"\bin\s+vec4\s+(\w+)\s*;")
-_OPAQUE_BLACK = np.array([0, 0, 0, 255])
 
 
 def run_cases(cases: Sequence[Case]) -> list[Result]:
@@ -81,14 +80,6 @@ def grid(attribute: str, columns: int, rows: int) -> Mesh:
     below = np.concatenate([first, first + 1, first + columns + 1], axis=1)
     above = np.concatenate([first + 1, first + columns + 2, first + columns + 1], axis=1)
     return Mesh({attribute: corners.reshape(-1, 4).astype(np.float32)}, np.concatenate([below, above]))
-
-
-def colors(picture: Array, discards: bool = False) -> Array:
-    """A picture in 8 bits; where nothing was drawn, opaque black, which is the clear color."""
-    with np.errstate(invalid="ignore"):
-        result: Array = np.rint(255.0 * np.clip(np.nan_to_num(picture), 0.0, 1.0)).astype(np.int64)
-    empty = discards & (picture == 0.0).all(axis=-1, keepdims=True)
-    return np.where(empty, _OPAQUE_BLACK, result)
 
 
 def mismatch(expect: Expectation, pictures: Mapping[str, Array], known: Array) -> str:

@@ -23,6 +23,7 @@ DRAWN = {"gl-es": "GLSL ES 3.00", "browser": "WGSL, Tint"}
 """The titles of those that draw only."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
+_OPAQUE_BLACK = np.array([0, 0, 0, 255])
 _SLOW = "did not finish within"
 """In the message of a back end that was ended."""
 
@@ -65,6 +66,14 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
         elif name in running:
             results[name] = _outcome(translations, target, running[name], few, lambda drawn: judge(drawn, expected))
     return results
+
+
+def colors(picture: Array, discards: bool = False) -> Array:
+    """A picture in 8 bits; where nothing was drawn, opaque black, which is the clear color."""
+    with np.errstate(invalid="ignore"):
+        result: Array = np.rint(255.0 * np.clip(np.nan_to_num(picture), 0.0, 1.0)).astype(np.int64)
+    empty = discards & (picture == 0.0).all(axis=-1, keepdims=True)
+    return np.where(empty, _OPAQUE_BLACK, result)
 
 
 def _outcome(

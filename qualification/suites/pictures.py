@@ -203,12 +203,10 @@ class Translations:
 
 
 def _written_names(uniform: ProgramUniform) -> list[str]:
-    """The author's names of a uniform's elements: of each element of arrays of structs."""
-    names = []
-    for indices in product(*map(range, uniform["lengths"][: uniform["name"].count("[]")])):
-        places = iter(indices)
-        names.append(re.sub(r"\[\]", lambda _, places=places: f"[{next(places)}]", uniform["name"]))
-    return names
+    """The author's names of a uniform: of each element of arrays of structs."""
+    first, *rest = uniform["name"].split("[]")
+    indices = product(*map(range, uniform["lengths"][: len(rest)]))
+    return [first + "".join(f"[{i}]{part}" for i, part in zip(each, rest, strict=True)) for each in indices]
 
 
 def _elements(uniform: ProgramUniform, numbers: Array) -> dict[str, Array]:

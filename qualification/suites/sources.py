@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import amber_cases, deqp_cases, piglit_shaders, piglit_vectors, text_folders
+from qualification.suites import amber_cases, deqp_cases, piglit_shaders, piglit_vectors, text_folders, webgl_cases
 
 
 class Case(Protocol):
@@ -59,6 +59,14 @@ SUITES = {
 } | {
     "amber-graphicsfuzz": Suite(
         *_VK_GL_CTS, (_AMBER,), "Apache-2.0", amber, "qualification.suites.amber_runs:run_cases"
+    ),
+    "webgl": Suite(
+        "KhronosGroup/WebGL",
+        "f15a73f727d8",
+        (f"{webgl_cases.TESTS}/conformance", f"{webgl_cases.TESTS}/conformance2"),
+        "MIT",
+        webgl_cases.cases,
+        "qualification.suites.webgl_runs:run_cases",
     ),
     "spirv-cross": Suite(
         "KhronosGroup/SPIRV-Cross",
