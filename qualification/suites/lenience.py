@@ -20,21 +20,9 @@ LENIENCE = {
         r"precision_conflict|unspecified_precision|differing_precision",
         "no other language has precisions: they are left out, so that those of two stages need not agree",
     ),
-    "locations of uniforms": Lenience(
-        r"uniform_location", "the places of uniforms are chosen anew: those of the text have no effect"
-    ),
-    "gl_FragData and gl_FragColor": Lenience(
-        r"fragdata", "what both write is one output in the translation; the desktop's drivers accept more than one"
-    ),
-    "const of a parameter": Lenience(
-        r"argument(_array)?_const|const_arg", "the constness of a parameter is not a part of a function's type here"
-    ),
-    "interfaces that differ": Lenience(
-        r"interpolation_mismatch|layout_qualifier_mismatch|io_block|patch_(in|out)_usage|global_layout|invalid_type_",
-        "stages are joined by the names of what they pass; what differs otherwise follows the fragment shader",
-    ),
-    "preprocessor": Lenience(
-        r"preprocessor", "white space in macros, names that begin with GL_, and signs in `#if` are as in C"
+    "interpolation": Lenience(
+        r"interpolation_mismatch",
+        "the fragment shader decides on the interpolation, as in GLSL from 4.40 on",
     ),
     OTHER: Lenience("", "no reason: to be refused"),
 }

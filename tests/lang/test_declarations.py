@@ -31,6 +31,13 @@ function float h() slot
     )
 
 
+def test_attribute_in_a_fragment_shader() -> None:
+    source = "#version 100\nattribute highp vec4 place;\nvoid main() { gl_FragColor = place; }\n"
+    with pytest.raises(SssgenError, match="a fragment shader has no attributes"):
+        load_glsl_text(source, "shade.frag")
+    load_glsl_text(source.removeprefix("#version 100\n"), "shade.frag")  # perhaps a part that an engine completes
+
+
 def test_prototypes_and_their_definitions() -> None:
     """A definition replaces its prototype; a prototype after the definition, or twice, changes nothing."""
     source = """

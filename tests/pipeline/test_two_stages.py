@@ -192,7 +192,7 @@ void main() {
 """
 READER = """#version 300 es
 precision highp float;
-layout(row_major) uniform;
+layout(std140, row_major) uniform;
 struct Light { vec3 color; float weights[3]; mat3 turn; };
 uniform Scene { float first; Light lights[2]; layout(column_major) mat2 skew; bool is; mat2x3 rows; vec3 last; } other;
 in vec3 v;
@@ -303,6 +303,36 @@ COLOR = "precision highp float;\nout vec4 color;\nvoid main() { color = vec4(t);
             "",
             "'t' has a location of 'm'",
             "its own",
+        ),
+        (
+            "layout(std140) uniform B { float t; };",
+            "uniform B { float t; };",
+            "the block 'B' is shared, but std140 in the vertex shader (a.vert:2:34)",
+            "layout(std140) in both",
+        ),
+        (
+            "out B { float t; float u; };",
+            "in B { float u; float t; };",
+            "the members of the block 'B' are in another order in the vertex shader (a.vert:2:15)",
+            "in one order",
+        ),
+        (
+            "layout(location = 4) uniform float t;",
+            "layout(location = 5) uniform float t;",
+            "'t' is at the location 5, but at 4 in the vertex shader (a.vert:2:36)",
+            "one location",
+        ),
+        (
+            "layout(location = 4) uniform float t;",
+            "layout(location = 3) uniform vec2 t[2];",
+            "the uniform 't' is a float in",
+            "alike",
+        ),
+        (
+            "layout(location = 4) uniform float t;",
+            "struct Places { vec2 first; vec2 second; }; layout(location = 3) uniform Places places; uniform float t;",
+            "'places' takes a location of 't' of the vertex shader (a.vert:2:36)",
+            "each uniform its own",
         ),
     ],
 )

@@ -85,6 +85,32 @@ EQUAL = {
         fragment("in float input; in float half_; in float half;", "vec4(half, half_, input, 0.0)"),
         (1.0, 2.0, 3.0, 0.0),
     ),
+    "structs": (
+        vertex(
+            "struct Lit { vec3 color; float weight; }; out Lit lit; flat out struct { int a; ivec2 b; } cell;",
+            "lit = Lit(vec3(1.0, 2.0, 3.0), 4.0); cell.a = 5; cell.b = ivec2(6, 7);",
+        ),
+        fragment(
+            "struct Lit { vec3 color; float weight; }; flat in struct { int a; ivec2 b; } cell; in Lit lit;",
+            "vec4(lit.color.z, lit.weight, cell.a, cell.b.y)",
+        ),
+        (3.0, 4.0, 5.0, 7.0),
+    ),
+    "structs and arrays in structs": (
+        vertex(
+            "struct Lit { vec3 color; float weights[2]; }; struct Seen { Lit lits[2]; mat2 turn; }; out Seen seen;"
+            " out Lit pair[2]; out vec2 seen_turn;",
+            "for (int i = 0; i < 2; i++) { seen.lits[i] = Lit(vec3(float(i)), float[2](2.0, 3.0));"
+            " pair[i].color = vec3(4.0); pair[i].weights = float[2](5.0, 6.0); }"
+            " seen.turn = mat2(7.0); seen_turn = vec2(8.0); if (gl_VertexID >= 0) return; seen.turn = mat2(9.0);",
+        ),
+        fragment(
+            "struct Lit { vec3 color; float weights[2]; }; struct Seen { Lit lits[2]; mat2 turn; }; in Seen seen;"
+            " in Lit pair[2]; in vec2 seen_turn; float sum(Lit lit) { return lit.color.x + lit.weights[1]; }",
+            "vec4(sum(seen.lits[1]), sum(pair[1]), seen.turn[1][1], seen_turn.x)",
+        ),
+        (4.0, 10.0, 7.0, 8.0),
+    ),
     "varying": (
         vertex("varying vec2 b; varying vec2 a;", "a = vec2(1.0); b = vec2(2.0);", OLD),
         fragment("in vec2 a; in vec2 b;", "vec4(a, b)"),

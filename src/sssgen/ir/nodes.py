@@ -271,7 +271,8 @@ class Uniform(NamedTuple):
     `hints` are the declaration's hints with their arguments, as in `("hint_range", (0.0, 1.0))`. `path` is what a
     program calls it where it is a part of a uniform of the source, or '': `lights[2].color` for a member of all
     elements, `maps[1]` for one texture, `Camera.view` for a member of a block with an instance name. `block` is the
-    uniform block that declares it, or ''; `row_major` is whether the block stores its matrices row by row.
+    uniform block that declares it, or ''; `row_major` is whether the block stores its matrices row by row, and `layout`
+    is std140, shared, packed, or '' where it states none. `location` is the one that the source states, or -1.
     """
 
     name: str
@@ -284,6 +285,8 @@ class Uniform(NamedTuple):
     path: str = ""
     block: str = ""
     row_major: bool = False
+    layout: str = ""
+    location: int = -1
 
     @property
     def source(self) -> str:
@@ -307,7 +310,8 @@ class Variable(NamedTuple):
     workgroup) or buffer (a storage buffer; its type is the struct of its members). A private one may have a `value` of
     constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''. `interpolation`
     is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer its binding. `access` is that
-    of a buffer: readonly, writeonly or ''; `layout` is std430 or std140.
+    of a buffer: readonly, writeonly or ''; `layout` is std430 or std140. `block` is the block of inputs or outputs that
+    declares it, or ''.
     """
 
     name: str
@@ -321,6 +325,7 @@ class Variable(NamedTuple):
     span: Span
     access: str = ""
     layout: str = ""
+    block: str = ""
 
 
 class StructDecl(NamedTuple):

@@ -85,6 +85,9 @@ vec4 shadow2DProj(sampler2DShadow map, vec4 P) { return vec4(vec3(texture(map, P
 }
 """Name → its definitions; each ends with the first brace at the end of a line."""
 
+ES_VERSIONS = {"modf": 300} | dict.fromkeys(("frexp", "uaddCarry", "usubBorrow", "umulExtended", "imulExtended"), 310)
+"""Name → the first version of GLSL ES that has it; none has the others."""
+
 _GENERIC = re.compile(r"\bgen[FIUB]\b")
 _DEFINITION = re.compile(r"^\w.*?\}$", re.MULTILINE | re.DOTALL)
 

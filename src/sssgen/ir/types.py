@@ -156,6 +156,13 @@ def component_kinds(type: Type) -> list[str]:
     return [kind_of(type)] * components(type)
 
 
+def uniform_locations(type: Type) -> int:
+    """How many locations a uniform of this type takes: one for each member and element that is no struct or array."""
+    if isinstance(type, Array):
+        return type.length * uniform_locations(type.element)
+    return sum(uniform_locations(field.type) for field in type.fields) if isinstance(type, Struct) else 1
+
+
 def column_size(type: Type) -> int:
     """How many components a column of a matrix has; of a scalar or vector: how many itself has."""
     return type.rows if isinstance(type, Matrix) else components(type)

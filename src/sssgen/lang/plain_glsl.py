@@ -11,6 +11,7 @@ from sssgen.ir.nodes import Module
 from sssgen.ir.spans import Span
 from sssgen.lang import shadertoy
 from sssgen.lang.assumption_comments import AssumedInput, with_assumptions
+from sssgen.lang.check.context import Language
 from sssgen.lang.check.module_checker import check_plain
 from sssgen.lang.preprocess.preprocessor import PreprocessedText, preprocess
 from sssgen.lang.source_lines import keep_lines
@@ -111,8 +112,8 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
         head = []  # it documents a declaration
     es = source.version if source.profile == "es" else 0
-    converts = any("implicit_conversions" in extension for extension in source.extensions)
-    module = check_plain(file, reporter, _is_vertex(tokens, label), es, converts)
+    extensions = frozenset(extension.partition(":")[0].strip() for extension in source.extensions)
+    module = check_plain(file, reporter, Language(es, _is_vertex(tokens, label), extensions))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 
@@ -144,7 +145,8 @@ def _is_vertex(tokens: Sequence[Token], label: str) -> bool:
     suffix = os.path.splitext(label)[1]
     if suffix in (".vert", ".vs", ".frag", ".fs"):
         return suffix in (".vert", ".vs")
-    return any(token.text == "gl_Position" or token.type == "ATTRIBUTE" for token in tokens)
+    names = {token.text for token in tokens if token.text.startswith("gl_") or token.type == "ATTRIBUTE"}
+    return "gl_Position" in names or ("attribute" in names and names.isdisjoint(("gl_FragColor", "gl_FragData")))
 
 
 class _Finder:

@@ -10,6 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from sssgen.ir import out_builtins
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.projective_reads import PROJECTIVE_READS
 from sssgen.lang.syntax.tokens import Token
 from sssgen.support.diagnostics import Reporter
 
@@ -44,20 +47,6 @@ RESERVED = {
 }
 """Version of GLSL ES → the words that no text may have."""
 
-ES_BUILTINS = frozenset(
-    """
-    radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 log2 sqrt inversesqrt
-    abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf
-    floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat packSnorm2x16 unpackSnorm2x16 packUnorm2x16
-    unpackUnorm2x16 packHalf2x16 unpackHalf2x16 length distance dot cross normalize faceforward reflect refract
-    matrixCompMult outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual
-    equal notEqual any all not textureSize texture textureProj textureLod textureOffset texelFetch texelFetchOffset
-    textureProjOffset textureLodOffset textureProjLod textureProjLodOffset textureGrad textureGradOffset textureProjGrad
-    textureProjGradOffset dFdx dFdy fwidth
-    """.split()  # noqa: SIM905 - a hundred names
-)
-"""The builtin functions of GLSL ES 3.00, which a text of this version or a later one may not define."""
-
 _LATER_OPERATORS = frozenset({"%", "~", "<<", ">>", "&", "|", "^", "%=", "<<=", ">>=", "&=", "|=", "^="})
 """What GLSL ES 1.00 reserves."""
 
@@ -79,7 +68,7 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
         for token in tokens:
             if token.text in reserved:
                 reporter.error(token.span, f"'{token.text}' is a reserved word of {shown}", "choose another name")
-        for token in _keywords_as_names(tokens) if version >= 300 else ():
+        for token in _keywords_as_names(tokens, version):
             reporter.error(token.span, f"'{token.text}' is a keyword of {shown}", "choose another name")
         if version == 100:
             for token in tokens:
@@ -95,10 +84,19 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
     reporter.check()
 
 
-def _keywords_as_names(tokens: Sequence[Token]) -> Iterator[Token]:
-    """The keywords of GLSL ES 3.00 behind a type: the parser takes them for names, as those of older texts."""
+def first_version(builtin: str) -> int:
+    """The first version of GLSL ES that has a builtin function; 0 where none has it."""
+    row = BUILTINS.get(builtin)
+    if row is not None:
+        return row.es
+    return 300 if builtin in PROJECTIVE_READS else out_builtins.ES_VERSIONS.get(builtin, 0)
+
+
+def _keywords_as_names(tokens: Sequence[Token], version: int) -> Iterator[Token]:
+    """The keywords of GLSL ES behind a type: the parser takes them for names, as those of older texts."""
+    keywords = ("invariant",) if version == 100 else ("flat", "smooth", "centroid", "invariant")
     for before, token in pairwise(tokens):
-        if before.type == "TYPE" and token.text in ("flat", "smooth", "centroid", "invariant"):
+        if before.type == "TYPE" and token.text in keywords:
             yield token
 
 

@@ -72,6 +72,8 @@ class Capabilities(NamedTuple):
     """What the vertex shader passes to the fragment shader is matched by names; if not, by locations."""
     nested_arrays: bool = False
     """Elements of arrays may be arrays; if not, they are structs with an array."""
+    nested_varyings: bool = False
+    """Stages pass structs and arrays in structs and in arrays; if not, each part is a variable of its own."""
     noperspective: bool = False
     """Stage inputs can be interpolated without perspective."""
     operand_order: bool = False

@@ -87,6 +87,10 @@ _CONSTANT_VALUES = Condition(
     "a module variable can only begin with a constant",
     lambda state: state.target.capabilities.module_variables and not state.target.capabilities.variable_values,
 )
+_FLAT_VARYINGS = Condition(
+    "it is a whole shader and the target passes no structs in structs",
+    lambda state: state.whole_shader and not state.target.capabilities.nested_varyings,
+)
 _PARAMETERS = Condition("the form passes uniforms as parameters", lambda state: state.form in state.target.parameters)
 _MASKS = _target("has no control flow per lane", lambda can: not can.lane_control_flow)
 
@@ -136,6 +140,12 @@ _SHADER_INPUT: tuple[Pass, ...] = (
         "vertex_levels", steps.on_module(with_levels), "read textures at level 0, as GLSL does there", _NO_VERTEX_LEVELS
     ),
     Pass("partner", steps.match_partner, "check that the other stage fits, and interpolate as it does", _PARTNER),
+    Pass(
+        "varying_parts",
+        steps.split_varyings,
+        "pass the parts of nested structs; of both stages, which are matched by them",
+        _FLAT_VARYINGS,
+    ),
     Pass("differences", steps.note_differences, "report what the target's stage cannot have", _SHADER),
 )
 

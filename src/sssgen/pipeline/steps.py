@@ -36,6 +36,7 @@ from sssgen.passes.stage.stage_interface import (
 from sssgen.passes.stage.storage_layout import check_buffers
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
+from sssgen.passes.stage.varying_parts import varying_parts
 from sssgen.passes.stage.varyings import interpolated_alike, mismatches
 from sssgen.passes.undefined_constants import undefined_constants
 from sssgen.passes.unsupported import Unsupported
@@ -127,6 +128,12 @@ def match_partner(state: State) -> Module:
     if errors:
         raise Unsupported(errors[0].message, errors[0].span, errors[1:], errors[0].hint)
     return interpolated_alike(vertex, fragment) if is_vertex else fragment
+
+
+def split_varyings(state: State) -> Module:
+    if state.partner is not None:
+        state.partner = varying_parts(state.partner)
+    return varying_parts(state.module)
 
 
 def note_differences(state: State) -> Module:

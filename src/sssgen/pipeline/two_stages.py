@@ -14,6 +14,8 @@ from sssgen.passes.stage.linked_stages import (
     passed_textures,
     sampled_textures,
     unlike_blocks,
+    unlike_locations,
+    unlike_orders,
     with_shared_uniforms,
 )
 from sssgen.passes.stage.stage_interface import ENTRY, stage_kind
@@ -69,7 +71,8 @@ def transpile_stages(
         blocks = {kind: block_members(source.module) for kind, source in sources.items()}
         modules = {kind: drop_unused(keep_reachable(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])
-        wrong += unlike_blocks(sources["vertex"].module, sources["fragment"].module)
+        for unlike in (unlike_blocks, unlike_orders, unlike_locations):
+            wrong += unlike(sources["vertex"].module, sources["fragment"].module)
         if wrong:
             raise SssgenError(
                 [Diagnostic("error", each.message, each.span, each.hint, source_line(each.span)) for each in wrong]

@@ -143,8 +143,8 @@ class SlotRecord(TypedDict):
 
     name: str
     builtin: str | None
-    path: list[int]
-    """The indices in the variable."""
+    path: list[int | str]
+    """The indices and names of members in the variable."""
     type: str
     location: int | None
     link: str | None
@@ -318,8 +318,8 @@ class VaryingRecord(TypedDict):
     """A value that the vertex shader passes on."""
 
     name: str
-    path: list[int]
-    """The element or column."""
+    path: list[int | str]
+    """The element, column or member."""
     type: str
     location: int
     interpolation: str
@@ -330,7 +330,7 @@ class OutputRecord(TypedDict):
     """An output of the fragment shader: it has `location` or `builtin`."""
 
     name: str
-    path: list[int]
+    path: list[int | str]
     type: str
     builtin: NotRequired[str | None]
     location: NotRequired[int]

@@ -11,16 +11,16 @@ _VARIANTS = {"Fine": "for each pair of pixels", "Coarse": "possibly one for each
 # fmt: off
 ROWS = (
     Builtin("dFdx", F1, "Change of x from one pixel to the next, to the right.",
-        axis="x", range=lambda F, x: x - x,
+        es=300, axis="x", range=lambda F, x: x - x,
         uniform_flow=True, texts={"hlsl": "ddx", "wgsl": "dpdx", "wgsl-metal": "dfdx"}, kind="derivative",
     ),
     Builtin("dFdy", F1,
         "Change of x from one pixel to the next along framebuffer y: up in OpenGL, down in D3D and WebGPU.",
-        axis="y", range=lambda F, x: x - x,
+        es=300, axis="y", range=lambda F, x: x - x,
         uniform_flow=True, texts={"hlsl": "ddy", "wgsl": "dpdy", "wgsl-metal": "dfdy"}, kind="derivative",
     ),
     Builtin("fwidth", F1, "abs(dFdx(x)) + abs(dFdy(x)).",
-        range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
+        es=300, range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
     ),
     *(
         Builtin(f"dFd{axis}{variant}", F1, f"dFd{axis}, {how}; in languages without this choice, dFd{axis}.",

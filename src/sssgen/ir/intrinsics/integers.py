@@ -38,7 +38,7 @@ def _inserted(x: int, y: int, z: int, w: int) -> int:
 # fmt: off
 ROWS = (
     Builtin("bitCount", _BOTH, "How many bits are 1.",
-        fold=lambda x: (x & _MOST).bit_count(), range=within(0.0, 32.0),
+        es=310, fold=lambda x: (x & _MOST).bit_count(), range=within(0.0, 32.0),
         texts={
             "glsl": "", "tsl": "", "hlsl": "{type}(countbits(asuint({0})))", "hlsl/genU": "{type}(countbits({0}))", "hlsl-dx9": "",
             "wgsl": "countOneBits", "wgsl/genU": "{type}(countOneBits({0}))",
@@ -56,7 +56,7 @@ genI bitCount(FROM x) {
         cost=10, vectors=(((7,), 3), ((0,), 0), ((-1,), 32), ((0x80000001,), 2), (((5, -2),), (2, 31))),
     ),
     Builtin("findLSB", _BOTH, "The number of the lowest bit that is 1; of 0, -1.",
-        fold=lambda x: (x & -x).bit_length() - 1, range=within(-1.0, 31.0),
+        es=310, fold=lambda x: (x & -x).bit_length() - 1, range=within(-1.0, 31.0),
         texts={
             "glsl": "", "tsl": "", "hlsl": "{type}(firstbitlow({0}))", "hlsl-dx9": "",
             "wgsl": "firstTrailingBit", "wgsl/genU": "{type}(firstTrailingBit({0}))", "wgsl-metal": "",
@@ -72,7 +72,7 @@ genI findLSB(FROM x) {
     ),
     Builtin("findMSB", _BOTH,
         "The number of the highest bit that is 1, of a negative int that is 0; where there is none, -1.",
-        fold=lambda x: (x if x >= 0 else ~x).bit_length() - 1, range=within(-1.0, 31.0),
+        es=310, fold=lambda x: (x if x >= 0 else ~x).bit_length() - 1, range=within(-1.0, 31.0),
         texts={
             "glsl": "", "tsl": "", "hlsl": "", "hlsl/genU": "{type}(firstbithigh({0}))", "hlsl-dx9": "",  # DXC takes an int for a uint
             "wgsl": "firstLeadingBit", "wgsl/genU": "{type}(firstLeadingBit({0}))", "wgsl-metal": "",
@@ -91,7 +91,7 @@ genI findMSB(FROM x) {
         cost=20, vectors=(((12,), 3), ((0,), -1), ((-1,), -1), ((-9,), 3), ((0x80000000,), 31), (((1, 6),), (0, 2))),
     ),
     Builtin("bitfieldReverse", ("genI(genI)", "genU(genU)"), "The bits in the opposite order.",
-        fold=lambda x: int(f"{x & _MOST:032b}"[::-1], 2), range=any_number,
+        es=310, fold=lambda x: int(f"{x & _MOST:032b}"[::-1], 2), range=any_number,
         texts={
             "glsl": "", "tsl": "", "hlsl": "asint(reversebits(asuint({0})))", "hlsl/genU": "reversebits", "hlsl-dx9": "",
             "wgsl": "reverseBits", "wgsl-metal": "reverse_bits",
@@ -111,7 +111,7 @@ gen{kind} bitfieldReverse(gen{kind} x) {{
     ),
     Builtin("bitfieldExtract", ("genI(genI, int, int)", "genU(genU, int, int)"),
         "The z bits of x from bit y on, in the low bits; of an int, with the sign of the highest of them.",
-        fold=_extracted_sign, fold_uint=_extracted,
+        es=310, fold=_extracted_sign, fold_uint=_extracted,
         not_constant=("wgsl",), samples=Samples(integers={1: (0, 32), 2: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z: (y >= 0) & (z >= 0) & (y <= 32) & (z <= 32) & (y + z <= 32), domain=_FIELD,
         texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))", "wgsl-metal": ""},
@@ -130,7 +130,7 @@ genU bitfieldExtract(genU x, int y, int z) {
     ),
     Builtin("bitfieldInsert", ("genI(genI, genI, int, int)", "genU(genU, genU, int, int)"),
         "x with its w bits from bit z on replaced by the low ones of y.",
-        not_constant=("wgsl",), fold=_inserted,
+        es=310, not_constant=("wgsl",), fold=_inserted,
         samples=Samples(integers={2: (0, 32), 3: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z, w: (z >= 0) & (w >= 0) & (z <= 32) & (w <= 32) & (z + w <= 32), domain="z >= 0, w >= 0, and z + w <= 32",
         texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))", "wgsl-metal": ""},

@@ -27,7 +27,7 @@ def _determinant(matrix: Columns) -> float:
 # fmt: off
 ROWS = (
     Builtin("matrixCompMult", ("matCR(matCR, matCR)",), "Componentwise product.",
-        range=lambda F, x, y: x * y,
+        es=100, range=lambda F, x, y: x * y,
         inside=lambda rt, x, y: abs(x * y) < 1e38,
         texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
@@ -42,7 +42,7 @@ mat4R matrixCompMult(mat4R x, mat4R y) { return mat4R(x[0] * y[0], x[1] * y[1], 
         ),
     ),
     Builtin("outerProduct", ("matCR(vecR, vecC)",), "The matrix whose column i is x·y[i].",
-        componentwise=False, range=vector_ranges.outer_product,
+        es=300, componentwise=False, range=vector_ranges.outer_product,
         inside=lambda rt, x, y: rt.length(x) * rt.length(y) < 1e38,
         texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
@@ -58,7 +58,7 @@ mat4R outerProduct(vecR x, vec4 y) { return mat4R(x * y.x, x * y.y, x * y.z, x *
         ),
     ),
     Builtin("transpose", ("matRC(matCR)",), "Rows for columns.",
-        not_constant=("wgsl",), fold=_transposed, componentwise=False, range=vector_ranges.transpose,
+        es=300, not_constant=("wgsl",), fold=_transposed, componentwise=False, range=vector_ranges.transpose,
         cost=0,
         ulp=0.0, vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
@@ -67,7 +67,7 @@ mat4R outerProduct(vecR x, vec4 y) { return mat4R(x * y.x, x * y.y, x * y.z, x *
         ),
     ),
     Builtin("determinant", ("float(mat)",), "Determinant.",
-        not_constant=("wgsl",), fold=lambda x: [_determinant(x)], samples=Samples(invertible=True), overflow_is_nan=True, componentwise=False, range=vector_ranges.determinant,
+        es=300, not_constant=("wgsl",), fold=lambda x: [_determinant(x)], samples=Samples(invertible=True), overflow_is_nan=True, componentwise=False, range=vector_ranges.determinant,
         cost=8, ulp=32.0, clause="WGSL: no bound",
         vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), -2.0), ((((1.0, 2.0), (2.0, 4.0)),), 0.0),
@@ -75,7 +75,7 @@ mat4R outerProduct(vecR x, vec4 y) { return mat4R(x * y.x, x * y.y, x * y.z, x *
         ),
     ),
     Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
-        samples=Samples(invertible=True), componentwise=False, range=vector_ranges.inverse, overflow_is_nan=True,
+        es=300, samples=Samples(invertible=True), componentwise=False, range=vector_ranges.inverse, overflow_is_nan=True,
         guards=(Guard(None, "division", "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers.",
             advice=lambda *ranges: "call it only where abs(determinant(x)) > DIVISOR", result=lambda F, range: range),),  # not finite, where a cofactor overflows
         domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},

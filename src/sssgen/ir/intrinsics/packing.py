@@ -12,7 +12,7 @@ from sssgen.ir.vector_ranges import all_within, any_numbers
 ROWS = (
     Builtin("packSnorm2x16", ("uint(vec2)",),
         "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
-        componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
+        es=300, componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, -1.0, 1.0) * 32767.0) - 0.5) > 0.01,
         texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm", "wgsl-metal": ""},
         polyfill="""
@@ -24,7 +24,7 @@ uint packSnorm2x16(vec2 x) {
         cost=9, vectors=((((-1.0, 1.0),), 0x7FFF8001), (((0.0, 0.0),), 0), (((4.0, -4.0),), 0x80017FFF)),
     ),
     Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
-        componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
+        es=300, componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, 0.0, 1.0) * 65535.0) - 0.5) > 0.01,
         texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm", "wgsl-metal": ""},
         polyfill="""
@@ -36,7 +36,7 @@ uint packUnorm2x16(vec2 x) {
         cost=8, vectors=((((0.0, 1.0),), 0xFFFF0000), (((0.0, 0.0),), 0), (((2.0, -1.0),), 0xFFFF)),
     ),
     Builtin("packHalf2x16", ("uint(vec2)",), "Two numbers as float16.",
-        fold=lambda x: [int.from_bytes(struct.pack("<2e", *x), "little")], samples=Samples(halves=True), componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
+        es=300, fold=lambda x: [int.from_bytes(struct.pack("<2e", *x), "little")], samples=Samples(halves=True), componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: rt.unpackHalf2x16(rt.packHalf2x16(x)) == x,
         domain="representable in float16: the rounding is the target's",
         texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float", "wgsl-metal": ""},
@@ -55,7 +55,7 @@ uint packHalf2x16(vec2 x) {
     ),
     Builtin("unpackSnorm2x16", ("vec2(uint)",),
         "Two numbers in [-1, 1] from signed 16-bit fractions of 32767.",
-        float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
+        es=300, float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
         texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16snorm", "wgsl-metal": ""},
         polyfill="""
 vec2 unpackSnorm2x16(uint x) {
@@ -66,14 +66,14 @@ vec2 unpackSnorm2x16(uint x) {
         vectors=(((0x80007FFF,), (1.0, -1.0)), ((0,), (0.0, 0.0)), ((0x4000,), (0.500015259254738, 0.0))),
     ),
     Builtin("unpackUnorm2x16", ("vec2(uint)",), "Two numbers in [0, 1] from 16-bit fractions of 65535.",
-        float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
+        es=300, float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
         texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16unorm", "wgsl-metal": ""},
         polyfill="vec2 unpackUnorm2x16(uint x) { return vec2(float(x & 65535u), float(x >> 16u)) / 65535.0; }",
         cost=3,
         vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
     ),
     Builtin("unpackHalf2x16", ("vec2(uint)",), "Two numbers from float16.",
-        fold=lambda x: struct.unpack("<2e", x[0].to_bytes(4, "little")), float32_bits=True, not_constant=("wgsl",),
+        es=300, fold=lambda x: struct.unpack("<2e", x[0].to_bytes(4, "little")), float32_bits=True, not_constant=("wgsl",),
         componentwise=False, range=all_within(-65504.0, 65504.0),
         guards=(NOT_FINITE_BITS._replace(text=NOT_FINITE_BITS.text.replace("LARGEST", "65504.0")),),
         inside=lambda rt, x: abs(rt.unpackHalf2x16(x)) < 1e5,
@@ -95,7 +95,7 @@ vec2 unpackHalf2x16(uint x) {
         ulp=0.0, vectors=(((0xC0003C00,), (1.0, -2.0)), ((0x3800,), (0.5, 0.0)), ((0x34007BFF,), (65504.0, 0.25))),
     ),
     Builtin("packSnorm4x8", ("uint(vec4)",), "Four numbers in [-1, 1], each as a signed 8-bit fraction of 127.",
-        componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
+        es=310, componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, -1.0, 1.0) * 127.0) - 0.5) > 0.01,
         texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8snorm", "wgsl-metal": ""},
         polyfill="""
@@ -109,7 +109,7 @@ uint packSnorm4x8(vec4 x) {
         ),
     ),
     Builtin("packUnorm4x8", ("uint(vec4)",), "Four numbers in [0, 1], each as an 8-bit fraction of 255.",
-        componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
+        es=310, componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, 0.0, 1.0) * 255.0) - 0.5) > 0.01,
         texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8unorm", "wgsl-metal": ""},
         polyfill="""
@@ -123,7 +123,7 @@ uint packUnorm4x8(vec4 x) {
         ),
     ),
     Builtin("unpackSnorm4x8", ("vec4(uint)",), "Four numbers in [-1, 1] from signed 8-bit fractions of 127.",
-        float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
+        es=310, float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8snorm", "wgsl-metal": ""},
         polyfill="""
 vec4 unpackSnorm4x8(uint x) {
@@ -136,7 +136,7 @@ vec4 unpackSnorm4x8(uint x) {
         ),
     ),
     Builtin("unpackUnorm4x8", ("vec4(uint)",), "Four numbers in [0, 1] from 8-bit fractions of 255.",
-        float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
+        es=310, float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8unorm", "wgsl-metal": ""},
         polyfill="""
 vec4 unpackUnorm4x8(uint x) {

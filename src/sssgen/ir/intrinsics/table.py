@@ -164,6 +164,10 @@ class Builtin(NamedTuple):
     relation: Literal["", "abs", "min", "max", "length", "squares"] = ""
     """What a condition on the result implies for the arguments (`passes.ranges.facts`); `squares`: of dot(x, x)."""
     # How languages have it
+    es: int = 0
+    """The first version of GLSL ES that has it, such as 300; 0: none has it."""
+    not_es: tuple[str, ...] = ()
+    """The parameters of signatures that GLSL ES lacks, as in `genF,float`."""
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
     constant: tuple[ConstantArgument, ...] = ()

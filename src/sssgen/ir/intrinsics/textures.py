@@ -122,7 +122,7 @@ ROWS = (
             "ivec3(samplerCubeArray, int)", "ivec2(sampler2DShadow, int)", "ivec2(samplerCubeShadow, int)", "ivec3(sampler2DArrayShadow, int)",
         ),
         "Size in texels of level y, and how many layers there are.",
-        size_query=True, componentwise=False, range=all_within(0.0, 65536.0), domain="the level exists",
+        es=300, size_query=True, componentwise=False, range=all_within(0.0, 65536.0), domain="the level exists",
         texts={
             "wgsl-metal": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})))",
             **{f"wgsl-metal/{kind}sampler3D,int": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})), {texture}.get_depth(uint({1})))" for kind in _KINDS},
@@ -165,7 +165,7 @@ ROWS = (
         ),
         "Filtered texture read; the level comes from screen-space derivatives, with z added to it. Of a texture that "
         "compares: the part of the texels that are not below the reference; only GLSL adds z to its level.",
-        with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
+        es=300, with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
         uniform_flow=True,
         texts={
             **integer_reads("texture").texts,
@@ -212,7 +212,7 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
             *integer_reads("textureLod").signatures,
         ),
         "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
-        componentwise=False, range=texels, domain="z = 0 for a texture that compares",
+        es=300, componentwise=False, range=texels, domain="z = 0 for a texture that compares",
         texts={
             **integer_reads("textureLod").texts,
             "wgsl-metal": "{texture}.sample({sampler}, {1}, metal::level({2}))", "wgsl-metal/sampler2DShadow,vec3,float": "",
@@ -243,7 +243,7 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
         ),
         "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y. HLSL and "
         "WGSL compare at level 0 only.",
-        componentwise=False, range=texels,
+        es=300, componentwise=False, range=texels,
         texts={
             **integer_reads("textureGrad").texts,
             "wgsl-metal": "",
@@ -276,7 +276,7 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
             *integer_reads("textureOffset").signatures,
         ),
         "As texture, with z added to the place in texels, and w to the level.",
-        with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
+        es=300, not_es=("sampler2DArrayShadow,vec4,ivec2",), with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
         componentwise=False, range=texels, constant=(offset_at(2),), uniform_flow=True,
         texts={
             **integer_reads("textureOffset").texts,
@@ -310,7 +310,7 @@ float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return tex
             *_offsets(", float"), "float(sampler2DShadow, vec3, float, ivec2)", *integer_reads("textureLodOffset").signatures,
         ),
         "As textureLod, with w added to the place in texels.",
-        componentwise=False, range=texels, constant=(offset_at(3),), domain="z = 0 for a texture that compares",
+        es=300, componentwise=False, range=texels, constant=(offset_at(3),), domain="z = 0 for a texture that compares",
         texts={
             **integer_reads("textureLodOffset").texts,
             "wgsl-metal": "",
@@ -334,7 +334,7 @@ float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) {
             *integer_reads("textureGradOffset").signatures,
         ),
         "As textureGrad, with the last argument added to the place in texels.",
-        componentwise=False, range=texels, constant=(offset_at(4),),
+        es=300, componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
             **integer_reads("textureGradOffset").texts,
             "wgsl-metal": "",
@@ -357,7 +357,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
     Builtin("texelFetch",
         tuple(f"{kind}vec4({kind}sampler{place}, int)" for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3")),
         "The texel at y of level z, unfiltered.",
-        componentwise=False, range=texels, defined=_exists,
+        es=300, componentwise=False, range=texels, defined=_exists,
         domain="the texel and the level exist",
         texts={
             "wgsl-metal": "",
@@ -382,7 +382,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
             for kind in _KINDS for place, size in (("2D, ivec2", 2), ("3D, ivec3", 3), ("2DArray, ivec3", 2))
         ),
         "As texelFetch, at y + w.",
-        componentwise=False, range=texels, constant=(offset_at(3),), defined=_exists, domain="the texel and the level exist",
+        es=300, componentwise=False, range=texels, constant=(offset_at(3),), defined=_exists, domain="the texel and the level exist",
         texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="\n".join(
             f"{kind}vec4 texelFetchOffset({kind}sampler{place} P, int level, ivec{size} offset) {{ return {read}, level); }}"
@@ -401,7 +401,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         ),
         "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
         "from the lower left one. Of a texture that compares: 1 where the texel is not below the reference z, else 0.",
-        componentwise=False, range=texels, constant=(channel_at(2),),
+        es=310, componentwise=False, range=texels, constant=(channel_at(2),),
         texts={
             "wgsl-metal": "",
             "glsl": "", "tsl": "",
@@ -434,7 +434,7 @@ vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return t
         ),
         "As textureGather, with an offset added to the places in texels: z, before the channel; after the reference of a "
         "texture that compares.",
-        componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
+        es=310, componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
         texts={
             "wgsl-metal": "",
             "glsl": "", "tsl": "",

@@ -42,8 +42,16 @@ class AccessChecker:
         constant = integer(self.context, position.expr)
         if constant is not None and not 0 <= constant < (length or constant + 1):  # 0: a buffer's own length
             raise self.context.fail(index.index.span, f"index {constant} is outside {spell(type_)}: 0 to {length - 1}")
+        if self.context.es == 100 and constant and isinstance(value.expr, ir.Global):
+            self.check_color(value.expr.name, index.index.span)
         quantity = value.quantity if isinstance(type_, Array) else ""
         return Typed(ir.Index(result, value.expr, position.expr, index.span), quantity)
+
+    def check_color(self, variable: str, span: ir.Span) -> None:
+        """Reports a colour behind the first one in GLSL ES 1.00, which has them only by an extension."""
+        if variable == "gl_FragData" and not self.context.language.extensions & {"GL_EXT_draw_buffers", "all"}:
+            hint = "write #extension GL_EXT_draw_buffers : enable"
+            raise self.context.fail(span, "GLSL ES 1.00 has one colour, gl_FragData[0]", hint)
 
     def texture_of(self, name: s.Name, index: s.IndexOf) -> Typed:
         """One texture of an array of textures, which are separate textures in the IR."""

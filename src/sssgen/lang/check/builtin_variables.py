@@ -46,6 +46,15 @@ _LIMITS = {
 """GLSL's implementation limits, with the values that WebGPU guarantees."""
 
 
+def check_colors(context: CheckContext) -> None:
+    """Reports the second of gl_FragColor and gl_FragData in GLSL ES: a shader writes one of them."""
+    colors = [context.variables[name] for name in ("gl_FragColor", "gl_FragData") if name in context.variables]
+    if context.es and len(colors) > 1:
+        last = max(colors, key=lambda variable: variable.span[1:3])
+        message = "a shader of GLSL ES has either gl_FragColor or gl_FragData"
+        context.reporter.error(last.span, message, "write gl_FragData[0] for gl_FragColor")
+
+
 def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
     """The variable or constant that a gl_ name stands for in plain GLSL. The first use of a variable declares it."""
     text = name.text

@@ -11,7 +11,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.rules import element_type
-from sssgen.ir.signatures import candidates, resolve
+from sssgen.ir.signatures import candidates, overload, resolve
 from sssgen.ir.types import FLOAT, INT, Sampler, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
@@ -98,6 +98,9 @@ class CallChecker:
     def glsl_builtin(self, name: str, args: list[Typed], call: s.CallOf) -> Typed | None:
         """A builtin that only plain GLSL has: one with a name of an old version, or with out parameters; else None."""
         renamed = old_names.new_name(name, len(args))
+        if self.context.es == 100 and name.endswith("Lod") and renamed and not self.context.language.vertex:
+            hint = f"write {name}EXT with #extension GL_EXT_shader_texture_lod : enable"
+            raise self.context.fail(call.span, f"{name} belongs to vertex shaders in GLSL ES 1.00", hint)
         if renamed is not None and candidates(renamed):
             return self.call_intrinsic(renamed, args, call)
         name = renamed or name
@@ -200,7 +203,10 @@ class CallChecker:
         if result is None:
             message = f"no overload of {name} takes ({', '.join(spell(arg.expr.type) for arg in args)})"
             raise self.context.fail(call.span, message, overload_hint(name, [arg.expr for arg in args]))
+        self.check_es(name, [value.type for value in values], call)
         values = self.with_constants(name, values)
+        if BUILTINS[name].kind == "derivative":
+            self.context.derivatives.append(call.span)
         if not any(arg.quantity for arg in args):
             return Typed(ir.Intrinsic(result, name, values, call.span))
         try:
@@ -214,6 +220,17 @@ class CallChecker:
         except q.Mixup as mixup:
             raise self.context.fail(call.span, mixup.message, mixup.hint) from None
         return Typed(ir.Intrinsic(result, name, values, call.span), quantity)
+
+    def check_es(self, name: str, types: list[Type], call: s.CallOf) -> None:
+        """Reports a builtin that GLSL ES lacks in this form, or in this stage."""
+        context, row = self.context, BUILTINS[name]
+        if not context.es:
+            return
+        match = overload(name, types) if row.not_es else None
+        if match is not None and match.params in row.not_es:
+            raise context.fail(call.span, f"GLSL ES has no {name} of ({', '.join(map(spell, types))})")
+        if context.language.vertex and len(types) == _WITH_BIAS.get(name):
+            raise context.fail(call.span, "a vertex shader has no bias of a level", "write textureLod")
 
     def with_constants(self, name: str, values: tuple[ir.Expr, ...]) -> tuple[ir.Expr, ...]:
         """The arguments of a builtin, with literals for those that must be constant expressions: WGSL has no other
@@ -235,6 +252,10 @@ class CallChecker:
             if any(not isinstance(part, ir.Construct | ir.Literal | ir.Unary) for part in subexpressions(value)):
                 values = (*values[:index], literal(value.type, numbers, value.span), *values[index + 1 :])
         return values
+
+
+_WITH_BIAS = {"texture": 3, "textureOffset": 4}
+"""Read → how many arguments it has with a bias."""
 
 
 def _is_viable(signature: Signature, types: tuple[Type, ...]) -> bool:

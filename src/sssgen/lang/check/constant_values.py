@@ -55,7 +55,7 @@ def _is_constant(context: CheckContext, part: ir.Expr) -> bool:
     if isinstance(part, ir.Intrinsic):
         return not BUILTINS[part.name].reads_neighbours_or_textures
     if isinstance(part, ir.Local):
-        return not context.function.scopes.visible[part.name].writable
+        return context.function.scopes.visible[part.name].constant
     if isinstance(part, ir.Global):
         return context.globals[part.name].constant
     return not isinstance(part, ir.Call)

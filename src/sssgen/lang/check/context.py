@@ -14,6 +14,17 @@ from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import Reporter, did_you_mean
 
 
+class Language(NamedTuple):
+    """What a file of plain GLSL is written in."""
+
+    es: int = 0
+    """The version of GLSL ES that the file names, or 0"""
+    vertex: bool = False
+    """Whether it is a vertex shader"""
+    extensions: frozenset[str] = frozenset()
+    """The names of the extensions that it asks for"""
+
+
 class Typed(NamedTuple):
     """A checked expression and its quantity ('' for none)."""
 
@@ -67,15 +78,16 @@ class CheckContext:
     """The declarations of one file so far, and the function that is being checked.
 
     `plain`: the file is GLSL, where an int converts to a float and loops need no visible bound. Otherwise it is a
-    technique. `es` is the version of GLSL ES that the file names, or 0; `converts`: numbers convert implicitly, as in
-    desktop GLSL.
+    technique. `converts`: numbers convert implicitly, as in desktop GLSL.
     """
 
-    def __init__(self, reporter: Reporter, plain: bool = False, es: int = 0, converts: bool = False) -> None:
+    def __init__(self, reporter: Reporter, plain: bool = False, language: Language = Language()) -> None:  # noqa: B008
         self.reporter = reporter
         self.plain = plain
-        self.es = es
-        self.converts = plain and (converts or not es)
+        self.language = language
+        self.es = language.es
+        converting = any("implicit_conversions" in extension for extension in language.extensions)
+        self.converts = plain and (converting or not self.es)
         self.file_scope = FunctionContext()
         self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]
@@ -90,12 +102,16 @@ class CheckContext:
         """The names of the uniform blocks so far."""
         self.uniform_layout: tuple[tuple[str, s.Expression | None], ...] = ()
         """The layout of all uniform blocks that follow."""
+        self.uniform_locations: dict[int, str] = {}
+        """The locations that the file gives its uniforms → the names of these."""
         self.workgroup: tuple[int, ...] = ()
         """The sizes of a compute shader's workgroup."""
         self.buffer_members: dict[str, ir.Member] = {}
         """The members of storage buffers without an instance name."""
         self.memory_operations: list[ir.Span] = []
         """The places of atomics and barriers."""
+        self.derivatives: list[ir.Span] = []
+        """The places of derivatives along the screen."""
         self.draw_uniforms: list[ir.Uniform] = []
         """The uniforms in place of variables that other languages lack."""
         self.file_names: set[str] = set()

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.signatures import candidates
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, unnested
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, spell, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
@@ -82,6 +82,8 @@ class ExpressionChecker:
 
     def listed_as(self, listed: s.Listed, type_: Type, what: str) -> ir.Expr:
         """`{…}` as a value of an array, struct, matrix or vector type."""
+        if self.context.es:
+            raise self.context.fail(listed.span, "GLSL ES has no values in braces", f"write {spell(type_)}(…)")
         types: list[Type]
         if isinstance(type_, Struct):
             types = [field.type for field in type_.fields]

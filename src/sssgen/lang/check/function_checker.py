@@ -5,7 +5,8 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_expressions import zero
 from sssgen.ir.rules import returns
-from sssgen.ir.types import VOID, Sampler, spell
+from sssgen.ir.signatures import resolve
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, spell
 from sssgen.lang.check.context import FunctionContext
 from sssgen.lang.check.declared_names import check_global_name, check_not_reserved
 from sssgen.lang.check.name_scope import Signature
@@ -13,7 +14,7 @@ from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
-from sssgen.lang.version_rules import ES_BUILTINS
+from sssgen.lang.version_rules import first_version
 
 
 class FunctionChecker:
@@ -42,14 +43,13 @@ class FunctionChecker:
         declaration = ir.Function(name.text, params, result, quantity, None, function.doc, name.span)
         if context.plain and name.text == "main" and (params or result != VOID):
             raise context.fail(name.span, "main takes nothing and returns nothing", "write void main()")
-        if context.es >= 300 and name.text in ES_BUILTINS and not name.span.file.startswith("intrinsics/"):
-            hint = "give it another name: from version 3.00 on GLSL ES does not allow this"
-            raise context.fail(name.span, f"'{name.text}' is a builtin function", hint)
-        self.declare(declaration, function.body is not None)
+        if context.es and not name.span.file.startswith("intrinsics/"):
+            self.check_es(declaration)
+        self.declare(declaration, function)
         if function.body is None:
             return declaration
         errors = len(context.reporter.diagnostics)
-        if context.plain:
+        if context.plain and context.es < 300:
             context.function.scopes.push()  # older GLSL lets a variable hide a parameter
         body = self.statements.statements(function.body.statements)
         if result != VOID and context.plain and not returns(body):
@@ -59,6 +59,20 @@ class FunctionChecker:
             message = f"{name.text} can end without returning {a_type(result)}"
             context.reporter.error(name.span, message, "add a return at its end")
         return declaration._replace(body=body)
+
+    def check_es(self, function: ir.Function) -> None:
+        """Reports what GLSL ES does not let a function be."""
+        context, name = self.context, function.name
+        first = first_version(name)
+        if context.es >= 300 and 0 < first <= context.es:
+            hint = "give it another name: from version 3.00 on GLSL ES does not allow this"
+            raise context.fail(function.span, f"'{name}' is a builtin function", hint)
+        if context.es == 100:
+            if first == 100 and resolve(name, [param.type for param in function.params]) is not None:
+                raise context.fail(function.span, f"'{function.key}' is a builtin function", "give it another name")
+            if _holds_array(function.result):
+                message = f"a function of GLSL ES 1.00 cannot return {a_type(function.result)}, which has an array"
+                raise context.fail(function.span, message, "return it by an out parameter, or write #version 300 es")
 
     def parameter(self, index: int, param: s.Parameter) -> ir.Param:
         """Checks and declares a parameter."""
@@ -77,10 +91,11 @@ class FunctionChecker:
             raise context.fail(name.span, f"parameter '{name.text}' is declared twice")
         return ir.Param(declared.ir_name, type_, param.direction, quantity, name.span)
 
-    def declare(self, function: ir.Function, has_body: bool) -> None:
+    def declare(self, function: ir.Function, written: s.FunctionSyntax) -> None:
         """Declares a function. A prototype and the definition must agree in everything but parameter names."""
-        context, span = self.context, function.span
-        overloads, new = context.functions.setdefault(function.name, []), _signature(function)
+        context, span, has_body = self.context, function.span, written.body is not None
+        constants = tuple([param.const for param in written.params]) if context.es else ()
+        overloads, new = context.functions.setdefault(function.name, []), _signature(function, constants)
         earlier = next((signature for signature in overloads if signature.key == function.key), None)
         if earlier is not None:
             elsewhere = f" of {earlier.span.file}" if earlier.span.file != span.file else ""
@@ -91,6 +106,8 @@ class FunctionChecker:
                 message = f"{function.key} differs from its first declaration"
                 raise context.fail(span, message, f"{there}; make both agree")
             if not has_body:
+                if context.es == 100:
+                    raise context.fail(span, f"{function.key} is already declared", f"{there}; leave this line out")
                 return
             overloads.remove(earlier)
         overloads.append(new)
@@ -119,7 +136,7 @@ class FunctionChecker:
         return function._replace(body=tuple(body), doc=function.doc or "Write this: the file only declares it.")
 
 
-def _signature(function: ir.Function) -> Signature:
+def _signature(function: ir.Function, constants: tuple[bool, ...] = ()) -> Signature:
     params = function.params
     return Signature(
         function.key,
@@ -130,4 +147,12 @@ def _signature(function: ir.Function) -> Signature:
         function.result,
         function.quantity,
         function.span,
+        constants,
     )
+
+
+def _holds_array(type_: Type) -> bool:
+    """Whether it is an array, or a struct with one in it."""
+    if isinstance(type_, Struct):
+        return any(_holds_array(field.type) for field in type_.fields)
+    return isinstance(type_, Array)

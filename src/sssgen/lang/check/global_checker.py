@@ -15,6 +15,7 @@ from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.uniform_hints import check_hints
+from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -37,11 +38,12 @@ class GlobalChecker:
         members = self.interface.members(block)
         count = len(self.uniforms)
         for member in members:
-            self.global_(member)
+            self.global_(member, block.name.text)
         self.interface.name_instance(block, members)
         self.uniforms[count:] = self.interface.uniforms_of(block, members, self.uniforms[count:])
 
-    def global_(self, external: s.GlobalSyntax) -> None:
+    def global_(self, external: s.GlobalSyntax, block: str = "") -> None:
+        """Declares variables; `block` is the block that they are members of, or ''."""
         context, declaration = self.context, external.declaration
         keywords = declaration.qualifiers.keywords
         if not declaration.declarators and declaration.type.struct is None:
@@ -57,17 +59,17 @@ class GlobalChecker:
                 elements = self.interface.textures(declaration, declarator)
                 for index, element in enumerate(elements):
                     path = "" if element is declarator else f"{declarator.name.text}[{index}]"
-                    self.uniform(declaration, element, external.doc, path)
+                    self.uniform(declaration, element, external.doc, path, index)
         elif "const" in keywords:
             for declarator in declaration.declarators:
                 self.constant(declaration, declarator)
         elif context.plain:
-            self.interface.declare(declaration, external.doc)
+            self.interface.declare(declaration, external.doc, block)
         else:
             message = "a technique cannot declare global variables"
             raise context.fail(declaration.type.span, message, "make it const, a uniform, or a parameter")
 
-    def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str, path: str) -> None:
+    def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str, path: str, element: int) -> None:
         context, name = self.context, declarator.name
         check_global_name(context, name)
         type_, quantity = named_type(context, declaration.type)
@@ -78,7 +80,8 @@ class GlobalChecker:
         default = self.default(declarator, type_)
         hints, texel_quantity = check_hints(context, declarator, type_, default)
         quantity = quantity or texel_quantity
-        uniform = ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path)
+        location = uniform_location(context, declaration.qualifiers, name, type_, element)
+        uniform = ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path, location=location)
         context.globals[name.text] = GlobalValue(type_, quantity, extent=of_uniform(uniform)[:2])
         self.uniforms.append(uniform)
 

@@ -40,6 +40,7 @@ class LoopChecker:
         steps: list[ir.Stmt] = []
         if statement.step is not None:
             _, steps = self.expressions.with_prelude(statement.step, self.statements.assignments.effect)
+        self.check_head(statement.body)
         body = self.loop_body(statement.body)
         scopes.pop(dissolve=len(before) > 1, loop=True)
         if len(context.reporter.diagnostics) > errors:
@@ -120,6 +121,16 @@ class LoopChecker:
             return [once(function, at_every_end(body, tested), span)]
         last = tested if isinstance(condition, ir.Literal) else [*tested, break_unless(condition)]
         return [ir.While(ir.Literal(BOOL, True, span), at_every_end(body, last), span)]
+
+    def check_head(self, body: s.Statement) -> None:
+        """Reports a variable of a loop's head that the body declares again: in GLSL ES both are one scope."""
+        head = self.context.function.scopes.stack[-1]
+        for statement in body.statements if self.context.es and isinstance(body, s.Compound) else ():
+            for declarator in statement.declarators if isinstance(statement, s.Declaration) else ():
+                name = declarator.name
+                if name.text in head:
+                    message = f"'{name.text}' is already declared in the head of this loop"
+                    self.context.reporter.error(name.span, message, "choose another name")
 
     def loop_body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
         function = self.context.function

@@ -34,6 +34,9 @@ class MemoryChecker:
         sizes = {name: value for name, value in layout.qualifiers.layout if name in _SIZES and value is not None}
         context = self.context
         if "uniform" in layout.qualifiers.keywords:
+            if any(name == "std430" for name, _ in layout.qualifiers.layout):
+                message = "std430 is a layout of storage buffers, not of uniform blocks"
+                raise context.fail(layout.qualifiers.span, message, "write std140")
             context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
         if not sizes or "in" not in layout.qualifiers.keywords:
             return
@@ -110,8 +113,8 @@ class MemoryChecker:
             type_: Type = Array(inner, 0)
         else:
             type_ = array_type(context, base, lengths)
-        if _holds(type_, "bool") or isinstance(unnested(type_)[0], Sampler):
-            hint = "write uint, which is 0 or 1" if _holds(type_, "bool") else ""
+        if holds(type_, "bool") or isinstance(unnested(type_)[0], Sampler):
+            hint = "write uint, which is 0 or 1" if holds(type_, "bool") else ""
             held = "a bool" if hint else a_type(type_)
             raise context.fail(declarator.name.span, f"a storage buffer cannot hold {held}", hint)
         return type_
@@ -161,8 +164,11 @@ class MemoryChecker:
         return Typed(result if result is not None else ir.Literal(VOID, 0, span))
 
     def check_stage(self) -> None:
-        """Reports what only a compute shader can have, in any other file."""
+        """Reports what only a compute shader can have, in any other file, and what only a fragment shader can have."""
         context = self.context
+        if context.workgroup or (context.es and context.language.vertex):
+            for span in context.derivatives:
+                context.reporter.error(span, "derivatives along the screen belong to fragment shaders")
         if context.workgroup:
             return
         hint = "a compute shader has layout(local_size_x = 64) in;"
@@ -208,8 +214,9 @@ def _has_matrix(type_: Type) -> bool:
     return isinstance(innermost, Matrix)
 
 
-def _holds(type_: Type, kind: str) -> bool:
+def holds(type_: Type, kind: str) -> bool:
+    """Whether there are scalars of a kind in it."""
     innermost, _ = unnested(type_)
     if isinstance(innermost, Struct):
-        return any(_holds(field.type, kind) for field in innermost.fields)
+        return any(holds(field.type, kind) for field in innermost.fields)
     return getattr(innermost, "kind", "") == kind

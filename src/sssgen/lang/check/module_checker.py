@@ -13,11 +13,11 @@ from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import Struct
 from sssgen.lang.check.access_checker import AccessChecker
 from sssgen.lang.check.assignment_checker import AssignmentChecker
-from sssgen.lang.check.builtin_variables import builtin_variable
+from sssgen.lang.check.builtin_variables import builtin_variable, check_colors
 from sssgen.lang.check.call_checker import CallChecker
 from sssgen.lang.check.call_graph import callees_first, calls_in, report_deep_calls, report_recursion
 from sssgen.lang.check.constant_values import constant_value
-from sssgen.lang.check.context import AlreadyReported, CheckContext
+from sssgen.lang.check.context import AlreadyReported, CheckContext, Language
 from sssgen.lang.check.declared_names import declare_struct, names_of_file
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.function_checker import FunctionChecker
@@ -46,10 +46,9 @@ def check(file: s.File, text: str, included: ir.Module = ir.Module()) -> ir.Modu
     return module
 
 
-def check_plain(file: s.File, reporter: Reporter, vertex: bool, es: int = 0, converts: bool = False) -> ir.Module:
-    """Checks a file of plain GLSL; `vertex` says that it is a vertex shader, `es` and `converts` are those of
-    `CheckContext`. Raises SssgenError with every error."""
-    module = ModuleChecker(CheckContext(reporter, True, es, converts), vertex).module(file)
+def check_plain(file: s.File, reporter: Reporter, language: Language) -> ir.Module:
+    """Checks a file of plain GLSL. Raises SssgenError with every error."""
+    module = ModuleChecker(CheckContext(reporter, True, language)).module(file)
     reporter.check()
     return module
 
@@ -57,9 +56,8 @@ def check_plain(file: s.File, reporter: Reporter, vertex: bool, es: int = 0, con
 class ModuleChecker:
     """Checks the declarations of one file in order."""
 
-    def __init__(self, context: CheckContext, vertex: bool = False) -> None:
+    def __init__(self, context: CheckContext) -> None:
         self.context = context
-        self.vertex = vertex
         expressions = ExpressionChecker(context)
         OperatorChecker(expressions)
         AccessChecker(expressions)
@@ -68,7 +66,7 @@ class ModuleChecker:
         LoopChecker(statements)
         SwitchChecker(statements)
         self.function_checker = FunctionChecker(statements)
-        self.globals = GlobalChecker(expressions, ShaderInterface(expressions, vertex), self.memory)
+        self.globals = GlobalChecker(expressions, ShaderInterface(expressions), self.memory)
         self.functions: dict[str, ir.Function] = {}
         self.added: dict[str, ir.Function] = {}
         """The functions that replace builtins with out parameters, by their keys."""
@@ -120,7 +118,8 @@ class ModuleChecker:
             functions = callees_first(functions, calls, self.function_checker.define_zeros)
         report_deep_calls(functions, calls, context.reporter)
         self.memory.check_stage()
-        main = functions.get("main()") if self.vertex else None
+        check_colors(context)
+        main = functions.get("main()") if context.language.vertex else None
         if main is not None and "gl_Position" not in context.variables:  # a stage that has it is a vertex shader
             builtin_variable(context, s.Name("gl_Position", main.span))
         return ir.Module(

@@ -20,6 +20,8 @@ class Variable(NamedTuple):
     """Its declaration has an error. Its uses are not reported."""
     value: tuple[object, ...] | None = None
     """The value of a constant, as in `constant_values`."""
+    constant: bool = False
+    """Whether it is declared as const; a parameter is not, as its value is another one in each call."""
 
 
 class GlobalValue(NamedTuple):
@@ -45,6 +47,8 @@ class Signature(NamedTuple):
     result: Type
     quantity: str
     span: Span
+    constants: tuple[bool, ...] = ()
+    """In GLSL ES: which parameters are const"""
 
 
 class Scopes:
@@ -104,11 +108,12 @@ class Scopes:
         writable: bool,
         faulty: bool = False,
         value: tuple[object, ...] | None = None,
+        constant: bool = False,
     ) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
         if name in self.stack[-1]:
             return None
-        variable = Variable(self.unused(name, type), type, quantity, writable, faulty, value)
+        variable = Variable(self.unused(name, type), type, quantity, writable, faulty, value, constant)
         self.stack[-1][name] = variable
         return self.add(variable)
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Sampler, Struct, Type, kind_of
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
 from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.memory_checker import holds
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.type_names import named_type
 from sssgen.lang.check.wording import a_type
@@ -19,23 +20,27 @@ from sssgen.lang.syntax import tree as s
 
 _MEMBER = {"uniform", "lowp", "mediump", "highp"}
 _MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
-_BLOCK_LAYOUT = _MEMBER_LAYOUT | {"std140", "shared", "packed", "binding", "set", "push_constant", "location"}
+_STORED = ("std140", "shared", "packed")
+_BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "binding", "set", "push_constant", "location"}
 """What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
 
 
 class ShaderInterface:
-    """Checks these variables of one file; `vertex` says that it is a vertex shader."""
+    """Checks these variables of one file."""
 
-    def __init__(self, expressions: ExpressionChecker, vertex: bool) -> None:
+    def __init__(self, expressions: ExpressionChecker) -> None:
         self.context = expressions.context
         self.expressions = expressions
-        self.vertex = vertex
+        self.vertex = self.context.language.vertex
 
-    def declare(self, declaration: s.Declaration, doc: str) -> None:
-        """Declares inputs, outputs or private variables."""
+    def declare(self, declaration: s.Declaration, doc: str, block: str) -> None:
+        """Declares inputs, outputs or private variables; `block` is the block that they are members of, or ''."""
         context, keywords = self.context, declaration.qualifiers.keywords
         if "buffer" in keywords:
             raise context.fail(declaration.qualifiers.span, "a storage buffer is a block: buffer Name { … };")
+        if "patch" in keywords:
+            message = "patch belongs to tessellation shaders, which are not translated"
+            raise context.fail(declaration.qualifiers.span, message)
         storage = self.storage(keywords)
         element, quantity = named_type(context, replace(declaration.type, lengths=()))
         self.check_passed(declaration, storage, element)
@@ -54,6 +59,8 @@ class ShaderInterface:
             if type_ == VOID or isinstance(type_, Sampler):
                 hint = "write uniform before it" if isinstance(type_, Sampler) else ""
                 raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}", hint)
+            if storage in ("in", "out") and isinstance(unnested(type_)[0], Struct):
+                self.check_struct(type_, storage, span, bool(block))
             value = None
             if declarator.value is not None:
                 value = self.initial_value(declarator.value, type_, quantity, name)
@@ -65,7 +72,8 @@ class ShaderInterface:
                 raise context.fail(span, "shared memory has no initial value", "write it in main(), before a barrier()")
             if storage in ("private", "shared"):
                 interpolation, location = "", -1
-            context.variables[name] = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
+            variable = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
+            context.variables[name] = variable._replace(block=block)
             context.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
 
     def check_passed(self, declaration: s.Declaration, storage: str, element: Type) -> None:
@@ -74,6 +82,8 @@ class ShaderInterface:
         if not context.es or storage not in ("in", "out"):
             return
         span, kind = declaration.qualifiers.span, kind_of(element)
+        if "attribute" in keywords and not self.vertex:
+            raise context.fail(span, "a fragment shader has no attributes", "pass it on by a varying")
         if "invariant" in keywords and storage == "in" and context.es >= 300:
             raise context.fail(span, "an input cannot be invariant", "write it before the output of the other stage")
         if kind == "bool" and not isinstance(element, Struct):
@@ -83,6 +93,23 @@ class ShaderInterface:
         is_fragment_input = storage == "in" and not self.vertex
         if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
             raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
+
+    def check_struct(self, type_: Type, storage: str, span: ir.Span, in_block: bool) -> None:
+        """Reports a struct that a stage cannot have as an input or output."""
+        context = self.context
+        if storage != ("out" if self.vertex else "in"):
+            what = "an attribute" if storage == "in" else "a colour"
+            raise context.fail(span, f"{what} cannot be {a_type(type_)}", "declare its members one by one")
+        if holds(type_, "bool"):
+            raise context.fail(span, "stages pass no bools", "make the member a float of 0 or 1")
+        if context.es < 300 or in_block:
+            return
+        parts = [field.type for field in type_.fields] if isinstance(type_, Struct) else []
+        parts += [type_.element] if isinstance(type_, Array) else []
+        if any(isinstance(part, Struct | Array) for part in parts):
+            message = f"GLSL ES does not pass {a_type(type_)} between stages"
+            hint = "pass a struct alone, with neither structs nor arrays in it, or an array of numbers or vectors"
+            raise context.fail(span, message, hint)
 
     def initial_value(self, value: s.Expression, type_: Type, quantity: str, name: str) -> ir.Expr:
         """The value of a variable before main()."""
@@ -154,7 +181,7 @@ class ShaderInterface:
                     label = replace(label, text=name)
                 renamed.append(replace(declarator, name=label))
             own = [keyword for keyword in member.qualifiers.keywords if keyword not in keywords]
-            layout = member.qualifiers.layout or block.qualifiers.layout
+            layout = () if "uniform" in keywords else member.qualifiers.layout or block.qualifiers.layout
             qualifiers = s.Qualifiers((*keywords, *own), layout, block.qualifiers.span)
             declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
             members.append(s.GlobalSyntax(declaration, block.doc))
@@ -201,12 +228,19 @@ class ShaderInterface:
             for declarator, now in zip(member.declarators, renamed.declaration.declarators, strict=True):
                 by_rows[now.name.text] = orders[-1:] == ["row_major"]
                 written[now.name.text] = declarator.name.text
+        layouts = [
+            name
+            for items in (self.context.uniform_layout, block.qualifiers.layout)
+            for name, _ in items
+            if name in _STORED
+        ]
         head = f"{block.name.text}." if block.instance is not None else ""
         return [
             uniform._replace(
                 path=head + written.get(uniform.name, uniform.name) if head else uniform.path,
                 block=block.name.text,
                 row_major=by_rows.get(uniform.name, False),
+                layout=layouts[-1] if layouts else "",
             )
             for uniform in uniforms
         ]
@@ -225,4 +259,7 @@ class ShaderInterface:
                 value = ir.Global(context.globals[label.text].type, label.text, label.span)
                 instance[declarator.name.text] = Typed(value)
                 if block.instance is None and label.text != declarator.name.text:
+                    if declarator.name.text in {*context.aliases, *context.globals}:
+                        message = f"'{declarator.name.text}' is already declared"
+                        raise context.fail(declarator.name.span, message, "give the block an instance name")
                     context.aliases[declarator.name.text] = label.text

@@ -135,7 +135,7 @@ class StatementChecker:
                         raise context.fail(declarator.value.span, message, "leave const out")
             elif const:
                 raise context.fail(name.span, f"const '{name.text}' needs a value")
-            variable = function.scopes.declare(name.text, declared, quantity, not const, value=constant)
+            variable = function.scopes.declare(name.text, declared, quantity, not const, value=constant, constant=const)
             if variable is None:
                 raise context.fail(name.span, f"'{name.text}' is already declared in this block")
             span = ir.Span(name.span.file, declaration.span.line, declaration.span.column, *name.span[3:])

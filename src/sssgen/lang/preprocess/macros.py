@@ -8,6 +8,7 @@ X3J11/86-196, 1986).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from sssgen.ir.spans import NOWHERE, Span
@@ -41,9 +42,15 @@ class Macro(NamedTuple):
     pastes: bool = False
     """Whether there is a `##` in the body."""
 
-    def same_as(self, other: Macro) -> bool:
-        """Whether both have the same definition, wherever it is written."""
-        return self.params == other.params and [t.text for t in self.body] == [t.text for t in other.body]
+    def same_as(self, other: Macro, spaced: bool = False) -> bool:
+        """Whether both have the same definition, wherever it is written; `spaced`: with blanks at the same places."""
+        same = self.params == other.params and [t.text for t in self.body] == [t.text for t in other.body]
+        return same and not (spaced and _blanks(self.body) != _blanks(other.body))
+
+
+def _blanks(tokens: Sequence[Token]) -> list[bool]:
+    """Behind which tokens there are blanks."""
+    return [before.span[3:5] != token.span[1:3] for before, token in pairwise(tokens)]
 
 
 _LINE = Macro("__LINE__", None, ())

@@ -91,7 +91,7 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
 
 _ES_VERSIONS = (300, 310, 320)
 _VERSIONS = (100, 110, 120, 130, 140, 150, 330, 400, 410, 420, 430, 440, 450, 460)
-_EXTENSION = re.compile(r"[A-Za-z_]\w* ?: ?(?:require|enable|warn|disable)|all ?: ?(?:warn|disable)")
+_EXTENSION = re.compile(r"(?!all\b)[A-Za-z_]\w* ?: ?(?:require|enable|warn|disable)|all ?: ?(?:warn|disable)")
 _PRECISION = re.compile(r"\bprecision\s+(?:low|medium|high)p\s+\w+\s*;")
 
 
@@ -264,6 +264,8 @@ class _Run:
             if self.version and not _EXTENSION.fullmatch(self.extensions[-1]):
                 hint = "write #extension NAME : enable; the others are require, warn and disable"
                 self.error(place, f"'{self.extensions[-1]}' is no extension with a behaviour", hint)
+            elif self.is_es and self.tokens:
+                self.error(place, "#extension must be above all declarations in GLSL ES")
         elif name == "pragma":
             self.pragmas.append(plain(rest))
             if self.pragmas[-1] == "once":
@@ -410,8 +412,10 @@ class _Run:
             self.error(*fault.details)
             return
         macros, constants = self.expander.macros, self.constants
-        if macro.name in macros and macros[macro.name].same_as(macro):
+        if macro.name in macros and macros[macro.name].same_as(macro, self.is_es):
             return
+        if keep and self.is_es and macro.name.startswith("GL_"):
+            self.error(tokens[0].span, f"'{macro.name}' is reserved in GLSL ES: choose a name without GL_")
         if keep and self.version and macro.name in self.text_macros:
             self.error(tokens[0].span, f"'{macro.name}' is already defined as something else", f"#undef {macro.name}")
         self.undefine(macro.name)

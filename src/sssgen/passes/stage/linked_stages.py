@@ -13,7 +13,7 @@ from itertools import zip_longest
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Call, Expr, Function, Global, Intrinsic, Local, Module, Uniform
-from sssgen.ir.types import Sampler
+from sssgen.ir.types import Sampler, uniform_locations
 from sssgen.ir.walk import all_expressions, calls_of, subexpressions
 from sssgen.passes.scopes import claim, globals_of, names_of
 from sssgen.passes.stage.varyings import contrast, mismatches, output_of, place, varyings
@@ -52,6 +52,10 @@ def unlike_blocks(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
         mine, theirs = [
             [uniform for uniform in module.uniforms if uniform.block == block] for module in (fragment, vertex)
         ]
+        if theirs and (theirs[0].layout or "shared") != (mine[0].layout or "shared"):
+            message = f"the block '{block}' is {mine[0].layout or 'shared'}, but {theirs[0].layout or 'shared'} in the "
+            message += f"vertex shader ({place(theirs[0].span)})"
+            yield Unsupported(message, mine[0].span, hint="write layout(std140) in both stages")
         for here, there in zip_longest(mine, theirs) if theirs else ():
             if here and there and (_name(here), here.row_major) == (_name(there), there.row_major):
                 first, second = contrast(there.type, here.type)
@@ -63,6 +67,43 @@ def unlike_blocks(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
             message += f" ({place((there or theirs[-1]).span)})"
             yield Unsupported(message, span, hint="declare the same members in the same order in both stages")
             break
+
+
+def unlike_orders(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
+    """The blocks of outputs that are blocks of inputs with their members in another order."""
+    for block in dict.fromkeys(variable.block for variable in varyings(fragment, "fragment") if variable.block):
+        mine, theirs = [
+            [variable for variable in varyings(module, kind) if variable.block == block]
+            for module, kind in ((fragment, "fragment"), (vertex, "vertex"))
+        ]
+        names = [[variable.name for variable in members] for members in (mine, theirs)]
+        if theirs and names[0] != names[1] and sorted(names[0]) == sorted(names[1]):
+            message = f"the members of the block '{block}' are in another order in the vertex shader "
+            message += f"({place(theirs[0].span)})"
+            yield Unsupported(message, mine[0].span, hint="declare them in one order in both stages")
+
+
+def unlike_locations(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
+    """The uniforms of both stages that take each other's locations, and those with two locations."""
+    placed = [
+        [(uniform, _locations(uniform)) for uniform in module.uniforms if uniform.location >= 0]
+        for module in (fragment, vertex)
+    ]
+    for here, mine in placed[0]:
+        for there, theirs in placed[1]:
+            overlap = mine.start < theirs.stop and theirs.start < mine.stop
+            if here.source == there.source and mine.start != theirs.start:
+                message = f"'{here.source}' is at the location {mine.start}, but at {theirs.start} in the vertex shader"
+            elif here.source != there.source and overlap:
+                message = f"'{here.source}' takes a location of '{there.source}' of the vertex shader"
+            else:
+                continue
+            hint = "a uniform has one location, and each uniform its own"
+            yield Unsupported(f"{message} ({place(there.span)})", here.span, hint=hint)
+
+
+def _locations(uniform: Uniform) -> range:
+    return range(uniform.location, uniform.location + uniform_locations(uniform.type))
 
 
 def _name(member: Uniform) -> str:

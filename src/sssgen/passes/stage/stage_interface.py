@@ -18,7 +18,7 @@ from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import VOID, Array, Type, Vector, kind_of
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
-from sssgen.passes.stage.varyings import locations, output_of, parts, varyings
+from sssgen.passes.stage.varyings import Path, locations, output_of, parts, varyings
 from sssgen.passes.unsupported import Note, Unsupported
 
 ENTRY = "main()"
@@ -38,11 +38,11 @@ _INSTEAD = {
 
 
 class Slot(NamedTuple):
-    """One input or output: a variable, or an element or column of one."""
+    """One input or output: a variable, or an element, a column or a member of one."""
 
     variable: Variable
-    path: tuple[int, ...]
-    """The indices of the element or column."""
+    path: Path
+    """What leads to the part: indices and names of members."""
     type: Type
     location: int
     """-1 for a builtin."""

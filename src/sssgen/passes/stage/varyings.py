@@ -17,8 +17,10 @@ from sssgen.passes.scopes import globals_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.support.diagnostics import did_you_mean
 
-Part = tuple[tuple[int, ...], Type]
-"""A scalar or vector of a variable, after the indices that lead to it."""
+Path = tuple[int | str, ...]
+"""The indices and the names of members that lead to a part of a variable."""
+Part = tuple[Path, Type]
+"""A scalar or vector of a variable, and its path."""
 
 
 def varyings(module: Module, kind: str) -> list[Variable]:
@@ -52,21 +54,19 @@ def locations(variables: Sequence[Variable], partner: Mapping[str, range], by_na
 
 
 def parts(variable: Variable) -> list[Part]:
-    """The scalars and vectors of a variable. Raises Unsupported for a struct."""
-    return _parts(variable, variable.type, ())
+    """The scalars and vectors of a variable, in their order."""
+    return _parts(variable.type, ())
 
 
-def _parts(variable: Variable, type_: Type, path: tuple[int, ...]) -> list[Part]:
-    inner, _ = unnested(type_)
-    if isinstance(inner, Struct):
-        message = f"'{variable.name}' contains structs, which cannot be passed between stages"
-        raise Unsupported(message, variable.span, hint="pass the members as variables of their own")
+def _parts(type_: Type, path: Path) -> list[Part]:
+    if isinstance(type_, Struct):
+        return [part for field in type_.fields for part in _parts(field.type, (*path, field.name))]
     if not isinstance(type_, Array | Matrix):
         return [(path, type_)]
     elements = element_type(type_)
     assert elements is not None
     element, count = elements
-    return [part for index in range(count) for part in _parts(variable, element, (*path, index))]
+    return [part for index in range(count) for part in _parts(element, (*path, index))]
 
 
 def output_of(input_: Variable, outputs: Sequence[Variable]) -> Variable | None:

@@ -35,7 +35,7 @@ def parameters(stage: Stage, taken: set[str]) -> list[EntryParameter]:
 
 def place_text(slot: Slot) -> str:
     """A slot as an expression."""
-    return slot.variable.name + "".join([f"[{index}]" for index in slot.path])
+    return slot.variable.name + "".join([f".{step}" if isinstance(step, str) else f"[{step}]" for step in slot.path])
 
 
 def member(slot: Slot) -> str:
