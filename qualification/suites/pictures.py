@@ -28,6 +28,7 @@ _BLOCK = re.compile(r"layout\s*\(([^()]*)\)(\s*uniform\s+\w+\s*\{)")
 _LAYOUT = re.compile(r"layout\s*\(([^()]*\bset\b[^()]*)\)")
 _INSTANCE = re.compile(r"\buniform\s+(\w+)\s*\{[^{}]*\}\s*(\w+)")
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", re.MULTILINE)
+_HIGH = "\n#define lowp highp\n#define mediump highp"
 _OLD = ("", "100", "100 es", "110", "120")
 """The versions that have attributes."""
 _NAME = "case"
@@ -226,10 +227,14 @@ def draw_written(program: PictureProgram, machine: DrawingBackend) -> Array:
 
 
 def for_driver(text: str) -> str:
-    """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140."""
+    """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140.
+
+    All precisions are `highp`: drivers compute the others in 16 bits, which no other language has to.
+    """
     text = _BLOCK.sub(lambda match: f"layout(std140{_opengl(match[1])}){match[2]}", text)
     text = _LAYOUT.sub(lambda match: f"layout({_opengl(match[1])[2:]})", text)
-    return text if _VERSION.search(text) else f"#version 100\n{text}"
+    text = text if _VERSION.search(text) else f"#version 100\n{text}"
+    return _VERSION.sub(lambda match: match[0] + _HIGH * (match[1].endswith("es") or match[1] == "100"), text, count=1)
 
 
 def _opengl(layout: str) -> str:

@@ -6,7 +6,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from qualification.suites import amber_cases, deqp_cases, piglit_shaders, piglit_vectors, text_folders, webgl_cases
+from qualification.suites import (
+    amber_cases,
+    deqp_cases,
+    piglit_shaders,
+    piglit_vectors,
+    sample_cases,
+    text_folders,
+    webgl_cases,
+)
 
 
 class Case(Protocol):
@@ -67,6 +75,14 @@ SUITES = {
         "MIT",
         webgl_cases.cases,
         "qualification.suites.webgl_runs:run_cases",
+    ),
+    "graphicsfuzz-samples": Suite(
+        "google/graphicsfuzz",
+        "aa32d4cb5566",
+        (sample_cases.FOLDER,),
+        "Apache-2.0",
+        sample_cases.cases,
+        "qualification.suites.sample_cases:run_cases",
     ),
     "spirv-cross": Suite(
         "KhronosGroup/SPIRV-Cross",
