@@ -8,7 +8,10 @@ from contextlib import ExitStack
 from sssgen.analyse.verify.machines import Machines, start_machines
 from sssgen.run.backends.backend_process import BackendProcess
 
-BACKENDS = {"numpy": "NumPy", "gl": "GLSL 3.30", "webgpu": "WGSL", "hlsl": "HLSL"}
+BACKENDS = {
+    "numpy": "NumPy", "gl": "GLSL 3.30", "gl-es": "GLSL ES 3.00", "webgpu": "WGSL, naga", "browser": "WGSL, Tint",
+    "hlsl": "HLSL, DXC", "metal": "Metal, stand-in",
+}  # fmt: skip
 """The back ends that run values, and their titles."""
 AUTHOR = "driver"
 """The driver with the author's own text: what it does wrong, no translation is blamed for."""

@@ -204,10 +204,9 @@ class Translations:
 
 
 def _written_names(uniform: ProgramUniform) -> list[str]:
-    """The author's names of a uniform: of each element of arrays of structs."""
-    first, *rest = uniform["name"].split("[]")
-    indices = product(*map(range, uniform["lengths"][: len(rest)]))
-    return [first + "".join(f"[{i}]{part}" for i, part in zip(each, rest, strict=True)) for each in indices]
+    """The author's names of a uniform's elements: of each element of arrays of structs."""
+    lengths = uniform["lengths"][: uniform["name"].count("[]")]
+    return [uniform["name"].replace("[]", "[{}]").format(*indices) for indices in product(*map(range, lengths))]
 
 
 def _elements(uniform: ProgramUniform, numbers: Array) -> dict[str, Array]:
