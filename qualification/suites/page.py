@@ -8,10 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from qualification.suites.lenience import LENIENCE, class_of
 from qualification.suites.machines import AUTHOR, BACKENDS
 from qualification.suites.outcomes import ACCEPTED, FRONT, OUTCOMES, RIGHT, SKIPPED, Result
-from qualification.suites.picture_outcomes import DRAWN
 from qualification.suites.sources import SUITES
 
-_TITLES = {**DRAWN, **BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
+_TITLES = {**BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
 
 
 def table(results: Mapping[str, Sequence[Result]]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from qualification.suites.compiled_texts import crash
 from qualification.suites.machines import AUTHOR, drawing_machines
 from qualification.suites.outcomes import INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome
+from qualification.suites.picture_functions import PixelFunction
 from qualification.suites.pictures import Mesh, PictureProgram, Translations, draw_written, places
 from sssgen.run.backends import Array
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.support.diagnostics import SssgenError
 
@@ -19,8 +21,8 @@ TARGETS = {
     "gl": "glsl-330", "gl-es": "glsl-es-300", "webgpu": "wgsl", "browser": "wgsl", "hlsl": "hlsl",
 }  # fmt: skip
 """The back ends that draw, and the target of each."""
-DRAWN = {"gl-es": "GLSL ES 3.00", "browser": "WGSL, Tint"}
-"""The titles of those that draw only."""
+NUMPY = "numpy"
+"""The back end that computes pixels."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
 _OPAQUE_BLACK = np.array([0, 0, 0, 255])
@@ -43,7 +45,7 @@ Judge: TypeAlias = Callable[[Drawn, Drawn | None], str]
 
 def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
     """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
-    running = drawing_machines(*TARGETS)
+    running = drawing_machines(*TARGETS, NUMPY)
     try:
         translations = [Translations(program) for program in programs]
     except SssgenError as error:
@@ -65,7 +67,26 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
             results[name] = results[AUTHOR]
         elif name in running:
             results[name] = _outcome(translations, target, running[name], few, lambda drawn: judge(drawn, expected))
+    if NUMPY in running and all(program.few for program in programs):
+        results[NUMPY] = _computed(translations, running, lambda drawn: judge(drawn, expected))
     return results
+
+
+def _computed(
+    programs: Sequence[Translations], running: Mapping[str, BackendProcess], judge: Callable[[Drawn], str]
+) -> Outcome:
+    """The outcome of the pixels at `places`, which NumPy computes."""
+    try:
+        functions = [PixelFunction(program, running) for program in programs]
+    except SssgenError as error:
+        return Outcome(SKIPPED, _message(error))
+    try:
+        pictures = [function.picture(NUMPY) for function in functions]
+        return _judged(judge(Drawn(pictures, places(programs[0].program.size))))
+    except SssgenError as error:
+        return _failed(error, REFUSED)
+    except Exception as error:
+        return crash(error)
 
 
 def colors(picture: Array, discards: bool = False) -> Array:

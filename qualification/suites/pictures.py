@@ -29,6 +29,7 @@ _LAYOUT = re.compile(r"layout\s*\(([^()]*\bset\b[^()]*)\)")
 _INSTANCE = re.compile(r"\buniform\s+(\w+)\s*\{[^{}]*\}\s*(\w+)")
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", re.MULTILINE)
 _HIGH = "\n#define lowp highp\n#define mediump highp"
+_HIGH_INT = "\nprecision highp int;"
 _OLD = ("", "100", "100 es", "110", "120")
 """The versions that have attributes."""
 _NAME = "case"
@@ -190,6 +191,18 @@ class Translations:
             compare=texture["sample_type"] == "depth",
         )
 
+    def elements(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of each scalar, vector and matrix among the uniforms, by its name in the source."""
+        instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
+        elements = {}
+        for uniform in self.reflection("glsl-330")["uniforms"]:
+            block, dot, member = uniform["name"].partition(".")
+            name = f"{instances.get(block, block)}{dot}{member}"
+            name += "[]" * (len(uniform["lengths"]) - name.count("[]"))
+            for indices, row in zip(product(*map(range, uniform["lengths"])), self.numbers(uniform), strict=True):
+                elements[name.replace("[]", "[{}]").format(*indices)] = tuple(map(float, row))
+        return elements
+
     def numbers(self, uniform: ProgramUniform) -> Array:
         """The numbers of a uniform, (elements, components)."""
         type_ = BY_NAME[uniform["type"]]
@@ -233,7 +246,8 @@ def for_driver(text: str) -> str:
     text = _BLOCK.sub(lambda match: f"layout(std140{_opengl(match[1])}){match[2]}", text)
     text = _LAYOUT.sub(lambda match: f"layout({_opengl(match[1])[2:]})", text)
     text = text if _VERSION.search(text) else f"#version 100\n{text}"
-    return _VERSION.sub(lambda match: match[0] + _HIGH * (match[1].endswith("es") or match[1] == "100"), text, count=1)
+    high = _HIGH if "#extension" in text else _HIGH + _HIGH_INT  # which no extension may follow
+    return _VERSION.sub(lambda match: match[0] + high * (match[1].endswith("es") or match[1] == "100"), text, count=1)
 
 
 def _opengl(layout: str) -> str:
