@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import time
 from collections.abc import Mapping
 
 import numpy as np
@@ -10,7 +12,9 @@ from qualification.suites.deqp_cases import Value
 from qualification.suites.deqp_programs import numbers
 from qualification.suites.pictures import Translations, places
 from sssgen.analyse.verify.driven_function import DrivenFunction, Inputs
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.plain_probes import FunctionProbes, probe_functions
+from sssgen.analyse.verify.rounding_noise import noise
 from sssgen.analyse.verify.stage_variables import MAIN, STAGE, plain
 from sssgen.analyse.verify.verification import load
 from sssgen.ir.constant_expressions import constant_numbers
@@ -19,6 +23,12 @@ from sssgen.run.backends import Array
 from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.support.diagnostics import failure
 
+SECONDS = 15.0
+"""How long the interpreter may take"""
+DRAWS = 16
+"""How many runs with errors of rounding"""
+STABLE = 0.001
+"""How far rounding may move a stable color"""
 _COORDINATES = STAGE["gl_FragCoord"][1]
 _OUTPUTS = {"gl_FragColor": STAGE["gl_FragColor"][1], "gl_FragData": f"{STAGE['gl_FragData'][1]}[0]"}
 
@@ -53,6 +63,7 @@ class PixelFunction:
         types = {leaf.name: (leaf.type, leaf.path) for probe in shown for leaf in probe.leaves}
         types |= {name: (param.type, name) for name, param in self.function.uniforms().items()}
         lanes = range(len(pixels))
+        self.key = self.function.keys[shown[0].name]
         self.inputs = Inputs(
             {
                 name: numbers(type_, Value("input", spell(type_), path, given[path]) if path in given else None, lanes)
@@ -68,3 +79,28 @@ class PixelFunction:
         picture = np.zeros((*self.size[::-1], 4), np.float32)
         picture[places(self.size)] = np.moveaxis(np.atleast_2d(result), -1, 0)
         return picture
+
+    def stable(self) -> Array:
+        """(height, width): the places whose color depends neither on rounding nor on what GLSL leaves undefined.
+
+        None are where the interpreter takes too long.
+        """
+        end = time.monotonic() + SECONDS
+
+        def check() -> None:
+            if time.monotonic() > end:
+                raise TimeoutError
+
+        program = Program(self.function.module, check)
+        known = places(self.size)
+        values, textures = self.inputs.values, self.inputs.textures
+        lanes = np.arange(int(known.sum()))
+        moved = np.full(len(lanes), np.inf)
+        with contextlib.suppress(TimeoutError, RecursionError):
+            moves = [
+                noise(program, [self.key], values, textures, lanes, DRAWS, True, at_edges=at_edges)[0]
+                for at_edges in (False, True)
+            ]
+            moved = np.max(moves, axis=0)
+        known[known] = moved < STABLE
+        return known

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,15 +12,18 @@ import numpy as np
 
 from qualification.suites.machines import AUTHOR
 from qualification.suites.outcomes import SKIPPED, WRONG, Outcome, Result
+from qualification.suites.picture_functions import PixelFunction
 from qualification.suites.picture_outcomes import Drawn, colors, outcomes
-from qualification.suites.pictures import of_fragment
+from qualification.suites.pictures import PictureProgram, Translations, of_fragment
+from sssgen.run.backends import Array
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 
 FOLDER = "shaders/src/main/glsl/samples"
 SIZE = (256, 256)
 STEP = 1
 """Of 255: the most that a channel differs"""
-EDGES = 0.01
+EDGES = 0.02
 """The share of the pixels that may differ more: where rounding decides which side of an edge a pixel is on"""
 
 
@@ -56,20 +60,34 @@ def run_case(case: SampleCase) -> Result:
         uniforms={name: np.array(values) for name, values in case.uniforms.items()},
         textures=dict.fromkeys(case.textures, texture()),
     )
-    results = outcomes([program], difference)
+    stable = functools.cache(lambda: stable_places(program))
+    results = outcomes([program], lambda drawn, expected: difference(drawn, expected, stable))
     if results.get(AUTHOR, Outcome(WRONG)).outcome == SKIPPED:
         results = {name: Outcome(SKIPPED, "the driver is too slow to compare with") for name in results}
+    unclear = {name for name, outcome in results.items() if outcome.outcome == WRONG and not stable().any()}
+    results |= dict.fromkeys(unclear, Outcome(SKIPPED, "rounding, or what GLSL leaves undefined, decides its picture"))
     return Result(case.name, "pictures", results)
 
 
-def difference(drawn: Drawn, expected: Drawn | None) -> str:
-    """How a picture differs from the driver's; '' where it does not."""
+def difference(drawn: Drawn, expected: Drawn | None, stable: Callable[[], Array]) -> str:
+    """How a picture differs from the driver's; '' where it does not, or not at stable places."""
     if expected is None:
         return ""
+    apart = np.abs(colors(drawn.pictures[0]) - colors(expected.pictures[0])).max(axis=-1)
     known = drawn.known & expected.known
-    apart = np.abs(colors(drawn.pictures[0]) - colors(expected.pictures[0])).max(axis=-1)[known]
-    count = int((apart > STEP).sum())
-    return f"{count} of {apart.size} pixels are up to {apart.max()} of 255 apart" if count > EDGES * apart.size else ""
+    for pixels, share in ((known, EDGES), (known & stable(), 0.0)):
+        count = int((apart[pixels] > STEP).sum())
+        if count <= share * pixels.sum():
+            return ""
+    return f"{count} of {pixels.sum()} stable pixels are up to {apart[pixels].max()} of 255 apart"
+
+
+def stable_places(program: PictureProgram) -> Array:
+    """The places whose color follows from the text; none where this is unknown."""
+    try:
+        return PixelFunction(Translations(program), {}).stable()
+    except SssgenError:
+        return np.zeros(program.size[::-1], bool)
 
 
 def texture() -> Texture:
