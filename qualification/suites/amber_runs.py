@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from qualification.suites import compute_runs
 from qualification.suites.amber_cases import PUSH, Case, Expectation, Pipeline
 from qualification.suites.machines import drawing_machines
 from qualification.suites.outcomes import FRONT, SKIPPED, Outcome, Result
@@ -28,7 +29,7 @@ def run_cases(cases: Sequence[Case]) -> list[Result]:
 def run_case(case: Case) -> Result:
     """The result of one case."""
     if any("compute" in pipeline.stages for pipeline in case.pipelines):
-        return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, "it is a compute shader")})
+        return Result(case.name, "buffers", run_compute(case))
     if not all(pipeline.stages["fragment"] for pipeline in case.pipelines):
         return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, "its GLSL is not in the file")})
     bound = {buffer for pipeline in case.pipelines for buffer in pipeline.bound.values()}
@@ -52,6 +53,28 @@ def run_case(case: Case) -> Result:
     return Result(case.name, "pictures", outcomes([*programs.values()], judge))
 
 
+def run_compute(case: Case) -> dict[str, Outcome]:
+    """The outcomes of a case with a compute shader."""
+    (pipeline,) = case.pipelines
+    text = pipeline.stages["compute"]
+    x, y, z = map(int, pipeline.run)
+    names = {place: int(place.partition(":")[2]) for place in pipeline.bound}
+    stored = compute_runs.declared(text).values()
+    buffers = {names[place]: case.buffers[buffer] for place, buffer in pipeline.bound.items() if names[place] in stored}
+    program = compute_runs.ComputeProgram(text, (x, y, z), buffers, blocks=bound_to(pipeline, text, case.buffers)[0])
+
+    def judge(after: compute_runs.Buffers, _: compute_runs.Buffers | None) -> str:
+        for expect in case.expects:
+            place = next(place for place, buffer in pipeline.bound.items() if buffer == expect.buffer)
+            word = after[names[place]][expect.place[0] // 4]
+            number = word.view(np.float32) if "float" in case.types.get(expect.buffer, "") else word.view(np.int32)
+            if number != expect.values[0]:
+                return f"the number at byte {expect.place[0]} is {number}, {expect.values[0]:g} is expected"
+        return ""
+
+    return compute_runs.outcomes(program, judge)
+
+
 def program_of(pipeline: Pipeline, buffers: Mapping[str, bytes], textures: Mapping[str, Texture]) -> PictureProgram:
     """The program of a pipeline with what is bound to it."""
     vertex, fragment = pipeline.stages["vertex"], pipeline.stages["fragment"]
@@ -60,16 +83,22 @@ def program_of(pipeline: Pipeline, buffers: Mapping[str, bytes], textures: Mappi
         match = _INPUT.search(vertex)
         name = match[1] if match else ""
         program = program._replace(vertex=vertex, mesh=grid(name, *map(int, pipeline.run[-2:])))
-    blocks, named_textures = {}, {}
-    for layout, name, after in _BOUND.findall(vertex + fragment):
+    blocks, images = bound_to(pipeline, vertex + fragment, buffers)
+    return program._replace(blocks=blocks, textures={name: textures[image] for name, image in images.items()})
+
+
+def bound_to(pipeline: Pipeline, text: str, buffers: Mapping[str, bytes]) -> tuple[dict[str, bytes], dict[str, str]]:
+    """The uniform blocks of a text, and its textures with the buffers that are their pictures."""
+    blocks, images = {}, {}
+    for layout, name, after in _BOUND.findall(text):
         numbers = dict(_NUMBER.findall(layout))
         place = PUSH if PUSH in layout else f"{numbers.get('set', 0)}:{numbers.get('binding', 0)}"
         buffer = pipeline.bound[place]
         if after == "{":
             blocks[name] = buffers[buffer]
         else:
-            named_textures[after] = textures[buffer]
-    return program._replace(blocks=blocks, textures=named_textures)
+            images[after] = buffer
+    return blocks, images
 
 
 def grid(attribute: str, columns: int, rows: int) -> Mesh:

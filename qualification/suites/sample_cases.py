@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from qualification.suites import compute_runs
 from qualification.suites.machines import AUTHOR
 from qualification.suites.outcomes import SKIPPED, WRONG, Outcome, Result
 from qualification.suites.picture_functions import PixelFunction
@@ -20,7 +21,8 @@ from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 
 FOLDER = "shaders/src/main/glsl/samples"
-SIZE = (256, 256)
+SIZE = (128, 128)
+"""A quarter of the suite's picture: the uniforms are those of the whole one"""
 STEP = 1
 """Of 255: the most that a channel differs"""
 EDGES = 0.02
@@ -28,12 +30,17 @@ EDGES = 0.02
 
 
 class SampleCase(NamedTuple):
-    """A fragment shader."""
+    """A fragment shader, or a compute shader."""
 
     name: str
     text: str
     uniforms: Mapping[str, tuple[float, ...]]
-    textures: tuple[str, ...]
+    textures: tuple[str, ...] = ()
+    groups: tuple[int, ...] = ()
+    """Of a compute shader"""
+    buffer: bytes = b""
+    """What a compute shader reads and writes"""
+    binding: int = 0
 
 
 def cases(root: Path) -> Iterator[SampleCase]:
@@ -48,6 +55,22 @@ def cases(root: Path) -> Iterator[SampleCase]:
             tuple(name for name, value in values.items() if "texture" in value),
         )
 
+    for path in sorted(folder.rglob("*.comp")):
+        values = json.loads(path.with_suffix(".json").read_text("utf-8"))
+        run = values["$compute"]
+        dtypes: dict[str, type] = {"i": np.int32, "u": np.uint32}
+        parts: list[Array] = [
+            np.array(field["data"], dtypes.get(field["type"][0], np.float32)) for field in run["buffer"]["fields"]
+        ]
+        yield SampleCase(
+            path.relative_to(folder).as_posix(),
+            path.read_text("utf-8"),
+            {name: tuple(value["args"]) for name, value in values.items() if "args" in value},
+            groups=tuple(run["num_groups"]),
+            buffer=b"".join(part.tobytes() for part in parts),
+            binding=run["buffer"]["binding"],
+        )
+
 
 def run_cases(cases: Sequence[SampleCase]) -> list[Result]:
     """The results of cases, in their order."""
@@ -56,6 +79,10 @@ def run_cases(cases: Sequence[SampleCase]) -> list[Result]:
 
 def run_case(case: SampleCase) -> Result:
     """The result of one case: each translation draws what the driver makes of the author's text."""
+    if case.groups:
+        x, y, z = case.groups
+        computed = compute_runs.ComputeProgram(case.text, (x, y, z), {case.binding: case.buffer}, case.uniforms)
+        return Result(case.name, "buffers", compute_runs.outcomes(computed, difference_of_buffers))
     program = of_fragment(case.text, SIZE)._replace(
         uniforms={name: np.array(values) for name, values in case.uniforms.items()},
         textures=dict.fromkeys(case.textures, texture()),
@@ -80,6 +107,18 @@ def difference(drawn: Drawn, expected: Drawn | None, stable: Callable[[], Array]
         if count <= share * pixels.sum():
             return ""
     return f"{count} of {pixels.sum()} stable pixels are up to {apart[pixels].max()} of 255 apart"
+
+
+def difference_of_buffers(after: compute_runs.Buffers, expected: compute_runs.Buffers | None) -> str:
+    """How the buffers of a compute shader differ from the driver's; '' where they do not."""
+    for binding, own in after.items():
+        others = own if expected is None else expected[binding]
+        with np.errstate(invalid="ignore"):
+            near = np.isclose(own.view(np.float32), others.view(np.float32), 1e-3, 1e-3)
+        count = int((~near & (own != others)).sum())
+        if count:
+            return f"{count} of {own.size} numbers differ"
+    return ""
 
 
 def stable_places(program: PictureProgram) -> Array:

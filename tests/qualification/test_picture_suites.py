@@ -141,6 +141,15 @@ def test_a_script_of_amber(tmp_path: Path) -> None:
     assert (case.expects[0].place, case.expects[0].values) == ((4,), (1.0,))
 
 
+def test_a_compute_shader_of_amber(tmp_path: Path) -> None:
+    path = tmp_path / "script.amber"
+    for expected, outcome in (("1", "right"), ("2", "wrong")):
+        path.write_text(SCRIPT.replace("4 == 1", f"4 == {expected}"), "utf-8")
+        result = amber_runs.run_case(amber_cases.read(path))
+        assert result.kind == "buffers" and drawn(result) == {outcome}, result
+        assert {"driver", "gl"} <= set(result.outcomes)
+
+
 @pytest.mark.parametrize(
     ("type_", "std140", "numbers", "size"),
     [("float[]", True, "1 2", 32), ("float", False, "1 2", 8), ("vec3<float>", False, "1 2 3", 16),
@@ -201,6 +210,25 @@ def test_a_sample(tmp_path: Path) -> None:
     (case,) = sample_cases.cases(tmp_path)
     result = sample_cases.run_case(case)
     assert case.name == "100/a.frag" and drawn(result) == {"right"}, result
+
+
+def test_a_sample_that_computes(tmp_path: Path) -> None:
+    folder = tmp_path / sample_cases.FOLDER / "compute"
+    folder.mkdir(parents=True)
+    text = "#version 320 es\nlayout(std430, binding = 0) buffer Data { int first; int rest[]; };\n"
+    text += "layout(local_size_x = 2) in;\nuniform float scale;\n"
+    text += "void main() { rest[gl_GlobalInvocationID.x] += first * int(scale); }\n"
+    (folder / "a.comp").write_text(text, "utf-8")
+    fields = [{"type": "int", "data": [3]}, {"type": "int", "data": [1, 2, 3, 4]}]
+    values = {
+        "$compute": {"num_groups": [2, 1, 1], "buffer": {"binding": 0, "fields": fields}},
+        "scale": {"args": [2.0]},
+    }
+    (folder / "a.json").write_text(json.dumps(values), "utf-8")
+    (case,) = sample_cases.cases(tmp_path)
+    assert np.frombuffer(case.buffer, np.int32).tolist() == [3, 1, 2, 3, 4]
+    result = sample_cases.run_case(case)
+    assert result.kind == "buffers" and drawn(result) == {"right"}, result
 
 
 def test_stable_pixels_depend_on_no_rounding() -> None:
