@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -25,6 +26,7 @@ NUMPY = "numpy"
 """The back end that computes pixels."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
+_W = re.compile(r"\bgl_FragCoord\s*\.\s*[xyzrgb]*[wa]\b")
 _OPAQUE_BLACK = np.array([0, 0, 0, 255])
 _SLOW = "did not finish within"
 """In the message of a back end that was ended."""
@@ -67,6 +69,11 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
             results[name] = results[AUTHOR]
         elif name in running:
             results[name] = _outcome(translations, target, running[name], few, lambda drawn: judge(drawn, expected))
+    for name in _SAME_DRIVER:
+        if name in results and results[name].outcome == WRONG == results[AUTHOR].outcome:
+            results[name] = Outcome(SKIPPED, f"the driver is wrong on the author's text, too: {results[name].why}")
+    if "hlsl" in results and any(_W.search(program.fragment) for program in programs):
+        results["hlsl"] = Outcome(SKIPPED, "DXC leaves the w of gl_FragCoord as Vulkan has it")
     if NUMPY in running and all(program.few for program in programs):
         results[NUMPY] = _computed(translations, running, lambda drawn: judge(drawn, expected))
     return results
