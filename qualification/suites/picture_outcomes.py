@@ -26,7 +26,7 @@ NUMPY = "numpy"
 """The back end that computes pixels."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
-_W = re.compile(r"\bgl_FragCoord\s*\.\s*[xyzrgb]*[wa]\b")
+_DEPTH = re.compile(r"\bgl_FragCoord\s*\.\s*[xyrg]*[zwba]")
 _OPAQUE_BLACK = np.array([0, 0, 0, 255])
 _SLOW = "did not finish within"
 """In the message of a back end that was ended."""
@@ -72,8 +72,10 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
     for name in _SAME_DRIVER:
         if name in results and results[name].outcome == WRONG == results[AUTHOR].outcome:
             results[name] = Outcome(SKIPPED, f"the driver is wrong on the author's text, too: {results[name].why}")
-    if "hlsl" in results and any(_W.search(program.fragment) for program in programs):
-        results["hlsl"] = Outcome(SKIPPED, "DXC leaves the w of gl_FragCoord as Vulkan has it")
+    if "hlsl" in results and any(_DEPTH.search(program.fragment) for program in programs):
+        results["hlsl"] = Outcome(
+            SKIPPED, "its z and w of gl_FragCoord are those of Direct3D, and it is drawn in OpenGL"
+        )
     if NUMPY in running and all(program.few for program in programs):
         results[NUMPY] = _computed(translations, running, lambda drawn: judge(drawn, expected))
     return results

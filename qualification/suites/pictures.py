@@ -142,9 +142,8 @@ class Translations:
             blocks["Material"] = Block(data, Place(block["group"], block["binding"]))
         else:
             for uniform in reflection["uniforms"]:
-                flat = "block" in uniform or not re.search(r"[.\[]", uniform["name"])
-                own = numbers[uniform["name"]]
-                values |= {names(uniform["name"]): own} if flat else _elements(uniform, own)
+                own = numbers[uniform["name"]]  # GLSL keeps structs, but not those in blocks
+                values |= {names(uniform["name"]): own, **_elements(uniform, own)}
         attributes = {
             f"ATTR{each['location'] + part}" if target == "hlsl" else names(each["name"]) + "'" * part: mesh.values(
                 each
@@ -170,7 +169,7 @@ class Translations:
             if block in instances:
                 source = f"{instances[block]}_{member}" if dot else source
             name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
-            return renames.get(name, name)
+            return renames.get(name, name).removeprefix("gl_")
 
         return shown
 

@@ -20,6 +20,8 @@ _SIZE = (32, 32)
 _OGLES_SIZE = (64, 64)
 EDGES = 0.02
 """The share of the pixels that may differ: where rounding decides which side of an edge a pixel is on"""
+_DEPTHS = {"near": 0.0, "far": 1.0, "diff": 1.0}
+"""Of the viewport"""
 _DEPTH = -2.0
 """Where the models of ogles are in front of the eye"""
 
@@ -40,6 +42,7 @@ def run_picture(case: PictureCase) -> Result:
     uniforms = {name: np.array(values) for name, values in case.uniforms.items()}
     if case.model:
         uniforms |= {"gtf_ModelViewProjectionMatrix": perspective(60.0, 1.0, 30.0)}
+        uniforms |= {f"gl_DepthRange.{name}": np.array(value) for name, value in _DEPTHS.items()}
         uniforms |= {f"viewport{side}": np.array(float(_OGLES_SIZE[0])) for side in ("width", "height")}
     programs = [PictureProgram(vertex, fragment, size, mesh, uniforms) for vertex, fragment in case.programs]
     return Result(case.name, "pictures", outcomes(programs, lambda drawn, expected: wrong(case, drawn, expected)))

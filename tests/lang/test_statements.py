@@ -377,6 +377,11 @@ void f(float a, int i) {{ {loop} }}
 """)
 
 
+def test_a_declaration_of_nothing() -> None:
+    text = "float f(float x) { float; switch (int(x)) { case 0: int; } return x; }\n"
+    assert "return x;" in print_module(load_glsl_text(f"#version 300 es\n{text}", "a.glsl").module, spans=False)
+
+
 def test_the_length_of_a_result_calls_the_function() -> None:
     text = "int n = 0;\nint[2] f() { n++; int a[2]; return a; }\nint g() { return f().length() * 10 + n; }\n"
     body = print_module(load_glsl_text(text, "a.glsl").module, spans=False).partition("int g()")[2]
