@@ -58,6 +58,8 @@ class Case(NamedTuple):
     pipelines: tuple[Pipeline, ...]
     """In the order of their runs"""
     buffers: dict[str, bytes]
+    types: dict[str, str]
+    """Of the numbers in a buffer"""
     expects: tuple[Expectation, ...]
 
 
@@ -74,6 +76,7 @@ def _commands(name: str, text: str) -> Case:
     shaders: dict[str, tuple[str, str]] = {}
     pipelines: dict[str, Pipeline] = {}
     buffers: dict[str, bytes] = {}
+    types: dict[str, str] = {}
     expects = []
     for line in lines:
         if line.startswith("#"):
@@ -89,6 +92,7 @@ def _commands(name: str, text: str) -> Case:
                 shaders[shader] = stage, source if kind == "SPIRV-ASM" else "\n".join([*body, ""])
                 source = ""
             case ["BUFFER", buffer, "DATA_TYPE", type_, *words, "DATA"]:
+                types[buffer] = type_
                 buffers[buffer] = packed(type_, "STD140" in words, " ".join(_block(lines)).split())
             case ["PIPELINE", _, pipeline]:
                 pipelines[pipeline] = _pipeline(_block(lines), shaders)
@@ -98,7 +102,7 @@ def _commands(name: str, text: str) -> Case:
             case ["EXPECT", *words]:
                 expects.append(_expectation(words))
     ran_ones = tuple(pipeline for pipeline in pipelines.values() if pipeline.run)
-    return Case(name, ran_ones, buffers, tuple(expects))
+    return Case(name, ran_ones, buffers, types, tuple(expects))
 
 
 def _block(lines: Iterator[str]) -> list[str]:
@@ -173,4 +177,4 @@ def _script(name: str, text: str) -> Case:
                 run = tuple(groups)
             case ["probe", "ssbo", _, binding, at, "==", number]:
                 expects.append(Expectation(f"0:{binding}", "EQ", (int(at),), (float(number),)))
-    return Case(name, (Pipeline({"compute": _glsl(comment)}, (0, 0), "", bound, run),), buffers, tuple(expects))
+    return Case(name, (Pipeline({"compute": _glsl(comment)}, (0, 0), "", bound, run),), buffers, {}, tuple(expects))

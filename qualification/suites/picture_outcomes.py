@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,8 +11,10 @@ import numpy as np
 from qualification.suites.compiled_texts import crash
 from qualification.suites.machines import AUTHOR, drawing_machines
 from qualification.suites.outcomes import INVALID, REFUSED, RIGHT, SKIPPED, WRONG, Outcome
+from qualification.suites.picture_functions import PixelFunction
 from qualification.suites.pictures import Mesh, PictureProgram, Translations, draw_written, places
 from sssgen.run.backends import Array
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.support.diagnostics import SssgenError
 
@@ -19,10 +22,12 @@ TARGETS = {
     "gl": "glsl-330", "gl-es": "glsl-es-300", "webgpu": "wgsl", "browser": "wgsl", "hlsl": "hlsl",
 }  # fmt: skip
 """The back ends that draw, and the target of each."""
-DRAWN = {"gl-es": "GLSL ES 3.00", "browser": "WGSL, Tint"}
-"""The titles of those that draw only."""
+NUMPY = "numpy"
+"""The back end that computes pixels."""
 _SAME_DRIVER = ("gl", "gl-es", "hlsl")
 """Those that draw with the driver of the author's text."""
+_DEPTH = re.compile(r"\bgl_FragCoord\s*\.\s*[xyrg]*[zwba]")
+_OPAQUE_BLACK = np.array([0, 0, 0, 255])
 _SLOW = "did not finish within"
 """In the message of a back end that was ended."""
 
@@ -42,7 +47,7 @@ Judge: TypeAlias = Callable[[Drawn, Drawn | None], str]
 
 def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
     """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
-    running = drawing_machines(*TARGETS)
+    running = drawing_machines(*TARGETS, NUMPY)
     try:
         translations = [Translations(program) for program in programs]
     except SssgenError as error:
@@ -64,7 +69,41 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
             results[name] = results[AUTHOR]
         elif name in running:
             results[name] = _outcome(translations, target, running[name], few, lambda drawn: judge(drawn, expected))
+    for name in _SAME_DRIVER:
+        if name in results and results[name].outcome == WRONG == results[AUTHOR].outcome:
+            results[name] = Outcome(SKIPPED, f"the driver is wrong on the author's text, too: {results[name].why}")
+    if "hlsl" in results and any(_DEPTH.search(program.fragment) for program in programs):
+        results["hlsl"] = Outcome(
+            SKIPPED, "its z and w of gl_FragCoord are those of Direct3D, and it is drawn in OpenGL"
+        )
+    if NUMPY in running and all(program.few for program in programs):
+        results[NUMPY] = _computed(translations, running, lambda drawn: judge(drawn, expected))
     return results
+
+
+def _computed(
+    programs: Sequence[Translations], running: Mapping[str, BackendProcess], judge: Callable[[Drawn], str]
+) -> Outcome:
+    """The outcome of the pixels at `places`, which NumPy computes."""
+    try:
+        functions = [PixelFunction(program, running) for program in programs]
+    except SssgenError as error:
+        return Outcome(SKIPPED, _message(error))
+    try:
+        pictures = [function.picture(NUMPY) for function in functions]
+        return _judged(judge(Drawn(pictures, places(programs[0].program.size))))
+    except SssgenError as error:
+        return _failed(error, REFUSED)
+    except Exception as error:
+        return crash(error)
+
+
+def colors(picture: Array, discards: bool = False) -> Array:
+    """A picture in 8 bits; where nothing was drawn, opaque black, which is the clear color."""
+    with np.errstate(invalid="ignore"):
+        result: Array = np.rint(255.0 * np.clip(np.nan_to_num(picture), 0.0, 1.0)).astype(np.int64)
+    empty = discards & (picture == 0.0).all(axis=-1, keepdims=True)
+    return np.where(empty, _OPAQUE_BLACK, result)
 
 
 def _outcome(

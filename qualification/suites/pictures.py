@@ -28,6 +28,8 @@ _BLOCK = re.compile(r"layout\s*\(([^()]*)\)(\s*uniform\s+\w+\s*\{)")
 _LAYOUT = re.compile(r"layout\s*\(([^()]*\bset\b[^()]*)\)")
 _INSTANCE = re.compile(r"\buniform\s+(\w+)\s*\{[^{}]*\}\s*(\w+)")
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(.*?)[ \t]*$", re.MULTILINE)
+_HIGH = "\n#define lowp highp\n#define mediump highp"
+_HIGH_INT = "\nprecision highp int;"
 _OLD = ("", "100", "100 es", "110", "120")
 """The versions that have attributes."""
 _NAME = "case"
@@ -140,9 +142,8 @@ class Translations:
             blocks["Material"] = Block(data, Place(block["group"], block["binding"]))
         else:
             for uniform in reflection["uniforms"]:
-                flat = "block" in uniform or not re.search(r"[.\[]", uniform["name"])
-                own = numbers[uniform["name"]]
-                values |= {names(uniform["name"]): own} if flat else _elements(uniform, own)
+                own = numbers[uniform["name"]]  # GLSL keeps structs, but not those in blocks
+                values |= {names(uniform["name"]): own, **_elements(uniform, own)}
         attributes = {
             f"ATTR{each['location'] + part}" if target == "hlsl" else names(each["name"]) + "'" * part: mesh.values(
                 each
@@ -168,7 +169,7 @@ class Translations:
             if block in instances:
                 source = f"{instances[block]}_{member}" if dot else source
             name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
-            return renames.get(name, name)
+            return renames.get(name, name).removeprefix("gl_")
 
         return shown
 
@@ -188,6 +189,18 @@ class Translations:
             kind=kind,
             compare=texture["sample_type"] == "depth",
         )
+
+    def elements(self) -> dict[str, tuple[float, ...]]:
+        """The numbers of each scalar, vector and matrix among the uniforms, by its name in the source."""
+        instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
+        elements = {}
+        for uniform in self.reflection("glsl-330")["uniforms"]:
+            block, dot, member = uniform["name"].partition(".")
+            name = f"{instances.get(block, block)}{dot}{member}"
+            name += "[]" * (len(uniform["lengths"]) - name.count("[]"))
+            for indices, row in zip(product(*map(range, uniform["lengths"])), self.numbers(uniform), strict=True):
+                elements[name.replace("[]", "[{}]").format(*indices)] = tuple(map(float, row))
+        return elements
 
     def numbers(self, uniform: ProgramUniform) -> Array:
         """The numbers of a uniform, (elements, components)."""
@@ -225,10 +238,15 @@ def draw_written(program: PictureProgram, machine: DrawingBackend) -> Array:
 
 
 def for_driver(text: str) -> str:
-    """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140."""
+    """The author's text as OpenGL's driver accepts it: without what belongs to Vulkan, whose blocks are std140.
+
+    All precisions are `highp`: drivers compute the others in 16 bits, which no other language has to.
+    """
     text = _BLOCK.sub(lambda match: f"layout(std140{_opengl(match[1])}){match[2]}", text)
     text = _LAYOUT.sub(lambda match: f"layout({_opengl(match[1])[2:]})", text)
-    return text if _VERSION.search(text) else f"#version 100\n{text}"
+    text = text if _VERSION.search(text) else f"#version 100\n{text}"
+    high = _HIGH if "#extension" in text else _HIGH + _HIGH_INT  # which no extension may follow
+    return _VERSION.sub(lambda match: match[0] + high * (match[1].endswith("es") or match[1] == "100"), text, count=1)
 
 
 def _opengl(layout: str) -> str:

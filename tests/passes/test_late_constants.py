@@ -38,6 +38,17 @@ def test_compilers_accept_the_text() -> None:
     assert text.count("f32 = 0.0;") == 1  # equal operands share a variable
 
 
+def test_a_number_beyond_the_floats_is_infinity() -> None:
+    text = "float f(float x) { return x < 1.0e40 ? -1e100 : 3.4e38; }\n"
+    module = load_glsl_text(text, "a.glsl").module
+    glsl, own = (
+        next(iter(transpile(module, target, "a", keep=True).files.values())) for target in ("glsl-330", "wgsl")
+    )
+    assert "x < 1.0 / 0.0 ? -(1.0 / 0.0) : 3.4e38" in glsl
+    assert "x < late / late_2" in own
+    assert compile_errors(own, "wgsl", "library") == []
+
+
 @pytest.mark.parametrize(
     ("call", "expected"),
     [

@@ -142,6 +142,8 @@ class CallChecker:
             raise self.context.fail(call.span, f"{a_type(value.type)} has no length()")
         if element[1] == 0:
             return self.memory.length(value, call)
+        if any(isinstance(part, ir.Call) for part in subexpressions(value)):
+            self.context.function.temporary("measured", value)  # what the calls do is done
         return Typed(ir.Literal(INT, element[1], call.span))
 
     def overload(self, name: str, args: list[Typed], call: s.CallOf) -> Signature:
