@@ -10,5 +10,5 @@ from sssgen.passes.names import Rules
 
 def rules_of(reserved: Iterable[str] = (), overloads: bool = True, folded: Iterable[str] = ()) -> Rules:
     """Rules with these reserved names; the `folded` ones are reserved in any case."""
-    able = Capabilities(matrix_overloads=True, loop_scope=True, member_types=True, hiding=True, overloads=overloads)
+    able = Capabilities(layout_overloads=True, loop_scope=True, member_types=True, hiding=True, overloads=overloads)
     return Rules(frozenset(reserved), frozenset(folded), capabilities=able)

@@ -174,11 +174,11 @@ def is_type(type: Type, ends_buffer: bool = False) -> bool:
     return isinstance(type, Void)
 
 
-def returns(block: Block) -> bool:
-    """Whether every path through a block ends in a return or a discard."""
+def returns(block: Block, discard_ends: bool = True) -> bool:
+    """Whether every path through a block ends in a return; or in a discard, if that ends the invocation."""
     for stmt in block:
-        if isinstance(stmt, Return | Discard):
+        if isinstance(stmt, Return) or (isinstance(stmt, Discard) and discard_ends):
             return True
-        if isinstance(stmt, If) and returns(stmt.then) and returns(stmt.otherwise):
+        if isinstance(stmt, If) and returns(stmt.then, discard_ends) and returns(stmt.otherwise, discard_ends):
             return True
     return False

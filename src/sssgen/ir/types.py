@@ -154,6 +154,15 @@ def uniform_locations(type: Type) -> int:
     return sum(uniform_locations(field.type) for field in type.fields) if isinstance(type, Struct) else 1
 
 
+def component_kinds(type: Type) -> list[str]:
+    """The kind of each of these scalars, in their order."""
+    if isinstance(type, Array):
+        return component_kinds(type.element) * type.length
+    if isinstance(type, Struct):
+        return [kind for field in type.fields for kind in component_kinds(field.type)]
+    return [kind_of(type)] * components(type)
+
+
 def column_size(type: Type) -> int:
     """How many components a column of a matrix has; of a scalar or vector: how many itself has."""
     return type.rows if isinstance(type, Matrix) else components(type)

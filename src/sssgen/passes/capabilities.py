@@ -8,6 +8,8 @@ from typing import NamedTuple
 class Capabilities(NamedTuple):
     """The capabilities of one language: `[capabilities]` of its descriptor. What is not declared is False."""
 
+    array_attributes: bool = False
+    """An attribute of a vertex shader may be an array."""
     array_constructors: bool = False
     """An array constructor is an expression, and a function may return an array."""
     bool_conversions: bool = False
@@ -20,10 +22,16 @@ class Capabilities(NamedTuple):
     """A storage buffer has a length; if not, the program passes it as a uniform."""
     constant_choices: bool = False
     """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
+    discard_ends: bool = False
+    """A discarded invocation ends; if not, it goes on as a helper, and returns where it is in a loop."""
+    dynamic_outputs: bool = False
+    """An index into an output of a fragment shader may be any expression; if not, it is constant."""
     dynamic_stores: bool = False
     """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
     early_returns: bool = False
     """`return` may be anywhere in a function; if not, a function returns once, at its end."""
+    endless_loops: bool = False
+    """A loop may have no exit."""
     float_array_uniforms: bool = False
     """Array elements in a uniform block may be smaller than 16 bytes; if not, each is a vector of four."""
     hiding: bool = False
@@ -35,6 +43,8 @@ class Capabilities(NamedTuple):
     """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
     lane_control_flow: bool = False
     """Each lane branches for itself; if not, control flow becomes masks."""
+    layout_overloads: bool = False
+    """Overloads may differ in a vec4 and a mat2 alone, or in structs that hold the same numbers."""
     loop_heads: bool = False
     """A loop's head may hold any expressions, which each round evaluates; if not, a loop counts to a plain value, or
     tests one."""
@@ -46,8 +56,6 @@ class Capabilities(NamedTuple):
     """The same for a mat3."""
     matrix_conversions: bool = False
     """A matrix can be constructed from a scalar (its diagonal) or from a matrix of another size."""
-    matrix_overloads: bool = False
-    """Overloads may differ in a vec4 and a mat2 alone."""
     matrix_scalar_arithmetic: bool = False
     """`-M` and componentwise `/`, `+` and `-` of matrices and scalars exist; `M * s` exists in every language."""
     member_types: bool = False
@@ -84,6 +92,8 @@ class Capabilities(NamedTuple):
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False
     """A struct constructor is an expression."""
+    struct_uniforms: bool = False
+    """A uniform of a whole shader may be a struct; if not, each of its members is a uniform."""
     subset_varyings: bool = False
     """A fragment shader may have fewer inputs than the vertex shader has outputs."""
     swizzle_store: bool = False

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.transform import rewrite
-from sssgen.ir.types import VEC4, Field, Matrix, Struct, Type, spell, unnested
+from sssgen.ir.types import VEC4, Field, Matrix, Struct, Type, component_kinds, spell, unnested
 from sssgen.ir.walk import all_expressions, statements, subexpressions
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import Renamer, declared, rename_locals
@@ -35,7 +35,7 @@ class Rules(NamedTuple):
     reserved_at_file_scope: Container[str] = ()
     """Names that only local names may have."""
     capabilities: Capabilities = Capabilities()
-    """`overloads`, `matrix_overloads`, `loop_scope`, `member_types` and `hiding` of the language."""
+    """`overloads`, `layout_overloads`, `loop_scope`, `member_types` and `hiding` of the language."""
     uniform_name: Callable[[str], str] = str
     """Gives a uniform's name in the target's style."""
     uniforms_declared: bool = True
@@ -206,12 +206,10 @@ class _Namer:
         return result
 
     def is_ambiguous(self, overloads: list[ir.Function]) -> bool:
-        """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
-        if self.rules.capabilities.matrix_overloads:
+        """Whether the target cannot distinguish these: HLSL a vec4 from a mat2, and structs of the same numbers."""
+        if self.rules.capabilities.layout_overloads:
             return False
-        signatures = [
-            [VEC4 if param.type == Matrix(2, 2) else param.type for param in function.params] for function in overloads
-        ]
+        signatures = [[_layout(param.type) for param in function.params] for function in overloads]
         return any(types in signatures[:index] for index, types in enumerate(signatures))
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
@@ -312,6 +310,13 @@ class _Namer:
         structs = [inner for inner, _ in map(unnested, types) if isinstance(inner, Struct)]
         used.update(spell(self.retyper.type(struct)) for struct in structs)
         return used
+
+
+def _layout(type: Type) -> object:
+    """What HLSL distinguishes of a type: a struct is the sequence of its numbers there."""
+    if isinstance(unnested(type)[0], Struct):
+        return tuple(component_kinds(type))
+    return VEC4 if type == Matrix(2, 2) else type
 
 
 def _word(type: Type) -> str:

@@ -22,7 +22,6 @@ from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import LinkError
 from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.stage.stage_interface import colors_in_use, entry_of, turned_derivatives
-from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.vertex_reads import with_levels
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.passes.unsupported import Unsupported
@@ -127,7 +126,7 @@ MATERIAL: tuple[Pass, ...] = (
 precision: their result is cached for all targets that agree in these."""
 
 _SHADER_INPUT: tuple[Pass, ...] = (
-    Pass("uniform_structs", steps.on_module(uniform_structs), "split uniforms of structs; no other pass knows these"),
+    Pass("uniform_structs", steps.split_uniforms, "split uniforms of structs, where the target has none of these"),
     Pass("color_outputs", steps.on_module(colors_in_use), "shorten gl_FragData to the elements in use", _SHADER),
     Pass("vertical_derivatives", steps.on_module(turned_derivatives), "negate dFdy, which keeps its sign", _Y_DOWN),
     Pass(
@@ -182,6 +181,12 @@ TARGET: tuple[Pass, ...] = (
     Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _COMPUTE),
     Pass(
         "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
+    ),
+    Pass(
+        "interface_arrays",
+        steps.replace_interface_arrays,
+        "copy arrays of the interface that a target cannot have",
+        _SHADER,
     ),
     Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
     Pass("uniform_parameters", steps.on_module(uniforms_to_parameters), "pass uniforms as parameters", _PARAMETERS),

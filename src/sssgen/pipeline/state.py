@@ -93,6 +93,11 @@ class State:
         return self.form == "shader" and bool(self.target.fragment_shell)
 
     @property
+    def keeps_structs(self) -> bool:
+        """Whether uniforms that are structs stay as the author wrote them: programs set their members by name."""
+        return self.keep and self.whole_shader and self.target.capabilities.struct_uniforms
+
+    @property
     def whole_shader(self) -> bool:
         return self.form in ("vertex", "fragment", "compute")
 

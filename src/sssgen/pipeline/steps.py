@@ -24,6 +24,7 @@ from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.atomic_places import check_atomics
 from sssgen.passes.stage.host_uniforms import group_count_to_uniform, lengths_to_uniforms
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
+from sssgen.passes.stage.interface_arrays import interface_arrays
 from sssgen.passes.stage.stage_interface import (
     ENTRY,
     Matching,
@@ -32,6 +33,7 @@ from sssgen.passes.stage.stage_interface import (
     remarks,
 )
 from sssgen.passes.stage.storage_layout import check_buffers
+from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.varying_parts import varying_parts
 from sssgen.passes.stage.varyings import interpolated_alike, mismatches
@@ -157,6 +159,10 @@ def fold_constants(state: State) -> Module:
     return fold(state.module, state.fixed)
 
 
+def split_uniforms(state: State) -> Module:
+    return uniform_structs(state.module, state.keeps_structs)
+
+
 def refuse_undefined_constants(state: State) -> Module:
     wrong = undefined_constants(state.module)
     if wrong:
@@ -236,6 +242,10 @@ def set_variables_at_start(state: State) -> Module:
 
 def _start(state: State) -> str:
     return ENTRY if entry_of(state.module) is not None else ""
+
+
+def replace_interface_arrays(state: State) -> Module:
+    return interface_arrays(state.module, state.form, _start(state), state.target.capabilities)
 
 
 def pass_host_uniforms(state: State) -> Module:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
 from sssgen.passes.stage.stage_interface import Slot, interpolation
+from sssgen.passes.stage.uniform_structs import members
 from sssgen.targets.assemble import Program
 from sssgen.targets.block_places import Member, place_in_block
 from sssgen.targets.descriptor import Target
@@ -162,8 +163,8 @@ def _bindings(
 ) -> tuple[UniformBlock | None, list[ProgramUniform], list[ProgramTexture]]:
     """The block of the uniforms, the uniforms, and the textures with their samplers."""
     first = next(iter(stages.values()))
-    members, size = place(first.uniforms, target.layout)
-    offsets = {member.uniform.name: (member.offset, member.size) for member in members}
+    placed, size = place(first.uniforms, target.layout)
+    offsets = {member.uniform.name: (member.offset, member.size) for member in placed}
     uniforms: list[ProgramUniform] = []
     textures: list[ProgramTexture] = []
     bindings = [texture.get("binding") for texture in first.reflection["textures"]] if target.layout else []
@@ -179,7 +180,8 @@ def _bindings(
             textures.append(_texture(uniform, list(readers), sampled, passed, binding))
         else:
             own: ProgramPlace = _in_block(uniform.type, *offsets[declared.name]) if target.layout else {}
-            uniforms.append(_uniform(uniform, list(readers), place_in_block(uniform, reader.blocks), own))
+            source = place_in_block(uniform, reader.blocks)
+            uniforms += [_uniform(member, list(readers), source, own) for member in members(uniform)]
     block: UniformBlock | None = None
     if target.layout and uniforms:
         block = {"size": size, "group": target.material_group, "binding": target.bindings.first}

@@ -10,6 +10,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Slot
 from sssgen.passes.stage.storage_layout import extent, offsets
+from sssgen.passes.stage.uniform_structs import members
 from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, needed, printer_for
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
@@ -53,7 +54,7 @@ def reflect(
     blocked = bool(target.layout) and target.declares(form)
     uniforms: list[UniformRecord] = []
     textures: list[TextureRecord] = []
-    for uniform in program.module.uniforms:
+    for uniform in [member for declared in program.module.uniforms for member in members(declared)]:
         declared, quantity = _declared(target, program, uniform), uniform.quantity or None
         if isinstance(uniform.type, Sampler):
             color_space = "linear" if not has_hint(uniform, "source_color") else "sRGB"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Array, Matrix, Sampler, Type, column_size, components, kind_of
+from sssgen.ir.types import Array, Matrix, Sampler, Struct, Type, column_size, components, kind_of
 
 
 class Member(NamedTuple):
@@ -68,7 +68,7 @@ def _align(offset: int, alignment: int) -> int:
 
 
 def _alignment(type_: Type) -> int:
-    if isinstance(type_, Matrix | Array):
+    if isinstance(type_, Matrix | Array | Struct):
         return 16
     return {1: 4, 2: 8, 3: 16, 4: 16}[components(type_)]
 

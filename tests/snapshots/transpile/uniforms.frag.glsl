@@ -17,11 +17,8 @@ uniform mat4 view;
 uniform vec3 eye;
 uniform vec4 shading_base;
 uniform float shading_weights[2];
-uniform vec3 lights_position[2];
-uniform vec3 lights_color[2];
-uniform float lights_range[2];
-uniform vec3 fog_color;
-uniform float fog_density;
+uniform Light lights[2];
+uniform Fog fog;
 uniform float time;
 uniform float exposure;
 uniform int count;
@@ -50,11 +47,10 @@ void main() {
         if (i >= count || (mask & (1u << uint(i))) == 0u) {
             continue;
         }
-        sum += lit(Light(lights_position[i], lights_color[i], lights_range[i]), v_position, n)
-            * shading_weights[1];
+        sum += lit(lights[i], v_position, n) * shading_weights[1];
     }
     if (foggy) {
-        sum = mix(sum, fog_color, 1.0 - exp(-fog_density * distance(eye, v_position)));
+        sum = mix(sum, fog.color, 1.0 - exp(-fog.density * distance(eye, v_position)));
     }
     vec2 uv = (view * vec4(v_position, 1.0)).xy + points[2] * time;
     color = vec4(sum * exposure, 1.0) * shading_base * texture(albedo, uv);

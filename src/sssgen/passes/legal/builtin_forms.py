@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from sssgen.ir import signatures
+from sssgen.ir.constant_evaluation import Value
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Binary, Construct, Expr, Intrinsic, Module, Unary
 from sssgen.ir.types import Sampler, Scalar, Type, Vector, kind_of
@@ -35,6 +36,18 @@ class BuiltinForms:
     def is_constant(self, name: str) -> bool:
         """Whether every compiler of the language computes it in a constant at file scope."""
         return self.language not in BUILTINS[name].not_constant
+
+    def is_outside(self, call: Intrinsic, value: Callable[[Expr], Value | None]) -> bool:
+        """Whether constant integers of a call lie outside its domain, whatever the other arguments are; `value` gives
+        those of constants."""
+        row = BUILTINS[call.name]
+        if row.defined is None or not row.samples.integers:
+            return False
+        given = {index: value(call.args[index]) for index in row.samples.integers}
+        if not any(given.values()):
+            return False
+        numbers = [(given.get(index) or (0,))[0] for index in range(len(call.args))]
+        return not row.defined(None, *numbers)
 
     def spell_call(self, call: Intrinsic, text: str) -> Expr:
         """A call of a builtin that has this text: as an operator, or with the arguments that the function takes."""

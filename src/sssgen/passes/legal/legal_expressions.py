@@ -8,8 +8,9 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.constant_evaluation import combine
 from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.rules import element_type
 from sssgen.ir.transform import Transformer, rewrite
-from sssgen.ir.types import FLOAT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
+from sssgen.ir.types import FLOAT, INT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.array_results import call_into
@@ -22,7 +23,7 @@ from sssgen.passes.legal.legal_operators import is_integer_division, legal_opera
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
 from sssgen.passes.lift_calls import Calls
-from sssgen.passes.scopes import claim, declared, outs_of
+from sssgen.passes.scopes import assigned, claim, declared, outs_of
 from sssgen.passes.substitute import inline, is_cheap
 from sssgen.passes.unsupported import MissingBuiltin, Unsupported
 from sssgen.passes.variable_effects import effects
@@ -168,7 +169,21 @@ class LegalExpressions(Transformer):
             # a store into `v.zyx[1]` is lost by DXC
             letter = expr.value.components[int(expr.index.value)]
             return ir.Swizzle(expr.type, expr.value.value, letter, expr.span)
+        if isinstance(expr, ir.Index) and type(expr.index) is ir.Local and self.integers is not None:
+            return self.element(expr, expr.index, self.integers)
         return expr
+
+    def element(self, expr: ir.Index, variable: ir.Local, integers: ConstantIntegers) -> ir.Index:
+        """An element at the value of a variable. Compilers that know the value refuse an index outside; the language
+        gives it any element."""
+        declared = self.scope.get(variable.name)
+        value = integers.value(declared.value) if isinstance(declared, ir.Declare) and declared.value else None
+        _, length = element_type(expr.value.type) or (None, 0)
+        if value is None or 0 <= value[0] < length or not length or self.current is None:
+            return expr
+        if variable.name in assigned(self.current, self.outs):
+            return expr
+        return expr._replace(index=ir.Literal(INT, max(0, min(int(value[0]), length - 1)), variable.span))
 
     def construct(self, construct: ir.Construct) -> ir.Expr:
         type_, args, span = construct.type, construct.args, construct.span
@@ -209,6 +224,8 @@ class LegalExpressions(Transformer):
             number = self.constant_calls.literals(call)
             if number is not None:
                 return number
+        if text and self.integers is not None and not self.capabilities.undefined_constants:
+            text = "" if self.builtins.is_outside(call, self.integers.value) else text
         return self.builtins.spell_call(call, text) if text else self.replace_builtin(call)
 
     def replace_builtin(self, call: ir.Intrinsic) -> ir.Expr:

@@ -8,11 +8,12 @@ from sssgen.ir.types import BOOL, Array, Matrix, Struct
 from sssgen.ir.walk import written_root
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.builtin_forms import Polyfill
+from sssgen.passes.legal.ends import with_ends
 from sssgen.passes.legal.integer_operators import counts_up
 from sssgen.passes.legal.legal_expressions import LegalExpressions
 from sssgen.passes.legal.part_stores import component_stores, is_dynamic_store, is_swizzle_store, parts_of, whole_store
 
-_JUMPS = (ir.Return, ir.Break, ir.Continue)  # in WGSL a discarded invocation goes on
+_JUMPS = (ir.Return, ir.Break, ir.Continue)  # a discarded invocation may go on
 
 
 class OutOfOrderError(Exception):
@@ -29,6 +30,8 @@ class LegalStatements(LegalExpressions):
         self.memories = {variable.name for variable in module.variables if variable.storage in ("shared", "buffer")}
 
     def block(self, block: ir.Block) -> ir.Block:
+        if self.current is not None and not (self.capabilities.discard_ends and self.capabilities.endless_loops):
+            block = with_ends(block, self.current.result, bool(self.counters), self.capabilities)
         if not self.capabilities.unreachable_statements:
             last = next((index for index, stmt in enumerate(block) if isinstance(stmt, _JUMPS)), len(block))
             block = block if last + 1 >= len(block) else block[: last + 1]
@@ -43,6 +46,7 @@ class LegalStatements(LegalExpressions):
 
     def declare(self, stmt: ir.Declare) -> ir.Stmt | None:
         value = stmt.value
+        self.scope[stmt.name] = stmt
         if value is None:
             return stmt
         place = ir.Local(stmt.type, stmt.name, stmt.span)
@@ -53,7 +57,8 @@ class LegalStatements(LegalExpressions):
                 return None
             return stmt._replace(value=value)
         begin = self.initial_value(value)
-        return stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
+        new = self.scope[stmt.name] = stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
+        return new
 
     def initial_value(self, value: ir.Expr) -> ir.Expr:
         """An initial value: there every language can list the parts of an array or struct."""
@@ -119,10 +124,12 @@ class LegalStatements(LegalExpressions):
         return self.return_value(value.no, span)
 
     def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
-        condition, body = self.loop(stmt)
+        outer, self.scope = self.scope, self.scope.copy()
         init = self.header(stmt.init)
+        condition, body = self.loop(stmt)
         start = len(self.out)
         step = self.header(stmt.step)
+        self.scope = outer
         steps = [*self.out[start:], step] if step is not None else self.out[start:]
         if len(steps) > 1:
             del self.out[start:]

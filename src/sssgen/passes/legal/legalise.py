@@ -13,6 +13,7 @@ from sssgen.ir.walk import calls_of
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.array_results import by_out_parameter
 from sssgen.passes.legal.builtin_forms import Polyfill
+from sssgen.passes.legal.ends import with_return
 from sssgen.passes.legal.legal_statements import LegalStatements, OutOfOrderError
 from sssgen.passes.legal.part_stores import parts_of
 from sssgen.passes.lift_calls import Calls, lift, order_conflicts, reads_too_late
@@ -108,6 +109,8 @@ class _Legaliser(LegalStatements):
         self.names, self.current = set(), function
         if not self.capabilities.mutable_parameters:
             function = self.copy_parameters(function)
+        if not self.capabilities.discard_ends:
+            function = with_return(function)
         return super().function(function)
 
     def copy_parameters(self, function: ir.Function) -> ir.Function:

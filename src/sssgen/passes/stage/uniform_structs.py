@@ -10,7 +10,7 @@ is constructed. Place: first of all, as no other pass handles these.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import prod
 from typing import NamedTuple
 
@@ -38,11 +38,30 @@ class _Leaf(NamedTuple):
         return Array(self.element, prod(self.lengths)) if self.lengths else self.element
 
 
-def uniform_structs(module: ir.Module) -> ir.Module:
-    """The module without uniforms that hold structs. Raises Unsupported."""
-    if not any(_is_split(uniform.type) for uniform in module.uniforms):
-        return module
-    return _Splitter(module).run()
+def uniform_structs(module: ir.Module, kept: bool = False) -> ir.Module:
+    """The module without uniforms that hold structs. Raises Unsupported.
+
+    Where structs are `kept`, those are split that have arrays of arrays, a value, or a block around them.
+    """
+    split = {
+        uniform.name: uniform.type
+        for uniform in module.uniforms
+        if _is_split(uniform.type)
+        and (not kept or uniform.block or any(uniform.default) or _nests_arrays(uniform.type))
+    }
+    return _Splitter(module, split).run() if split else module
+
+
+def members(uniform: ir.Uniform) -> Iterator[ir.Uniform]:
+    """A uniform, or its members that hold no struct, each as a uniform with the name that a program gives it."""
+    if not _is_split(uniform.type):
+        yield uniform
+        return
+    numbers = uniform.default or (0.0,) * components(uniform.type)
+    for path, lengths, element, default in _members((uniform.source,), uniform.type, (), [numbers]):
+        leaf = _Leaf("", lengths, element)
+        spelt = _host_name(path, uniform.type)
+        yield uniform._replace(name=spelt, type=leaf.type, default=default, path=spelt)
 
 
 def _is_split(type_: Type) -> bool:
@@ -50,11 +69,18 @@ def _is_split(type_: Type) -> bool:
     return isinstance(type_, Struct) or (isinstance(type_, Array) and isinstance(type_.element, Array | Struct))
 
 
+def _nests_arrays(type_: Type) -> bool:
+    """Whether it is an array of arrays, or has a member that is."""
+    if isinstance(type_, Array):
+        return isinstance(type_.element, Array) or _nests_arrays(type_.element)
+    return isinstance(type_, Struct) and any(_nests_arrays(field.type) for field in type_.fields)
+
+
 class _Splitter:
-    def __init__(self, module: ir.Module) -> None:
+    def __init__(self, module: ir.Module, split: Mapping[str, Type]) -> None:
         self.module = module
         self.taken = names_of(module)
-        self.split = {uniform.name: uniform.type for uniform in module.uniforms if _is_split(uniform.type)}
+        self.split = split
         self.leaves: dict[Path, _Leaf] = {}
 
     def run(self) -> ir.Module:
