@@ -154,6 +154,15 @@ def uniform_locations(type: Type) -> int:
     return sum(uniform_locations(field.type) for field in type.fields) if isinstance(type, Struct) else 1
 
 
+def passed_locations(type: Type) -> int:
+    """How many locations an input or output of this type takes: one for each scalar, vector and column of a matrix."""
+    if isinstance(type, Array):
+        return type.length * passed_locations(type.element)
+    if isinstance(type, Struct):
+        return sum(passed_locations(field.type) for field in type.fields)
+    return type.columns if isinstance(type, Matrix) else 1
+
+
 def component_kinds(type: Type) -> list[str]:
     """The kind of each of these scalars, in their order."""
     if isinstance(type, Array):

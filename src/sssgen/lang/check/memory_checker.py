@@ -155,7 +155,8 @@ class MemoryChecker:
 
     def result(self, row: MemoryRow, values: tuple[ir.Expr, ...], call: s.CallOf) -> Typed:
         function, span = self.context.function, call.span
-        self.context.memory_operations.append(span)
+        if not row.has_place:
+            self.context.barriers.append(span)
         result = None
         if row.returns and (row.needs_result or id(call) not in self.expressions.dropped):
             type_ = values[0].type if row.values else INT
@@ -173,11 +174,10 @@ class MemoryChecker:
             return
         hint = "a compute shader has layout(local_size_x = 64) in;"
         for variable in context.variables.values():
-            if variable.storage in ("shared", "buffer"):
-                message = "storage buffers and shared memory belong to compute shaders"
-                context.reporter.error(variable.span, message, hint)
-        for span in context.memory_operations:
-            context.reporter.error(span, "atomics and barriers belong to compute shaders", hint)
+            if variable.storage == "shared":
+                context.reporter.error(variable.span, "shared memory belongs to compute shaders", hint)
+        for span in context.barriers:
+            context.reporter.error(span, "barriers belong to compute shaders", hint)
 
 
 def stored_directly(stmts: list[ir.Stmt], scopes: Scopes) -> list[ir.Stmt]:

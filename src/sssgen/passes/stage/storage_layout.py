@@ -12,6 +12,7 @@ from sssgen.ir.nodes import Module, Variable
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.variable_effects import effects
 
 
 class Extent(NamedTuple):
@@ -59,9 +60,16 @@ def _up(offset: int, alignment: int) -> int:
     return (offset + alignment - 1) // alignment * alignment
 
 
+def has_buffers(module: Module) -> bool:
+    """Whether a module has storage buffers."""
+    return any(variable.storage == "buffer" for variable in module.variables)
+
+
 def check_buffers(module: Module, capabilities: Capabilities) -> Module:
-    """The same module. Raises Unsupported for a storage buffer that the target lays out otherwise."""
+    """The same module. Raises Unsupported for a storage buffer that the target lacks or lays out otherwise."""
     for variable in module.variables:
+        if variable.storage == "buffer" and not capabilities.storage_buffers:
+            raise Unsupported(f"'{variable.name}' is a storage buffer, which this target lacks", variable.span)
         if variable.storage == "buffer" and not capabilities.std140_buffers:
             struct = variable.type
             assert isinstance(struct, Struct)
@@ -71,6 +79,18 @@ def check_buffers(module: Module, capabilities: Capabilities) -> Module:
             if not capabilities.buffer_blocks:
                 _check_elements(struct, variable)
     return module
+
+
+def read_buffers(module: Module) -> Module:
+    """A vertex shader whose storage buffers are readonly. Raises Unsupported where it writes one."""
+    written = set[str]().union(*[effect.writes for effect in effects(module).values()])
+    variables = []
+    for variable in module.variables:
+        if variable.storage == "buffer" and variable.name in written:
+            message = f"a vertex shader of this target cannot write the storage buffer '{variable.name}'"
+            raise Unsupported(message, variable.span, hint="write it in a compute or fragment shader")
+        variables.append(variable._replace(access="readonly") if variable.storage == "buffer" else variable)
+    return module._replace(variables=tuple(variables))
 
 
 def _shape(type_: Type, rule: str) -> list[tuple[int, int]]:
