@@ -21,7 +21,7 @@ from sssgen.lang.syntax import tree as s
 _MEMBER = {"uniform", "lowp", "mediump", "highp"}
 _MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
 _STORED = ("std140", "shared", "packed")
-_BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "binding", "set", "push_constant", "location"}
+_BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "scalar", "binding", "set", "push_constant", "location"}
 """What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
 
 
@@ -194,7 +194,9 @@ class ShaderInterface:
             raise context.fail(name.span, f"the block '{name.text}' is already declared", hint)
         check_global_name(context, name)
         context.uniform_blocks.add(name.text)
-        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, _BLOCK_LAYOUT)
+        pushed = any(item == "push_constant" for item, _ in block.qualifiers.layout)
+        layouts = _BLOCK_LAYOUT | {"std430"} if pushed else _BLOCK_LAYOUT
+        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, layouts)
         for member in block.members:
             if "sampler" in member.type.name:
                 hint = "declare it outside of the block, as a uniform"
