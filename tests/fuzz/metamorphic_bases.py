@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
@@ -31,9 +32,9 @@ from sssgen.analyse.verify.time_limit import TimeLimit, TimeOverError
 from sssgen.analyse.verify.verification import load
 from sssgen.ir.nodes import Module, Param
 from sssgen.ir.types import Sampler, Type
+from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import drop_unused, keep_reachable
-from sssgen.passes.scopes import names_of
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
@@ -44,10 +45,12 @@ DRAWN = 6 * LANES
 FEWEST = 4
 """The fewest lanes that are worth a comparison."""
 STEADY = 1e-5
-SECONDS = 6.0
+SECONDS = 3.0
 """For the interpreter's runs of one function."""
-ROUNDS = 400
+ROUNDS = 200
 """The most rounds of loops in a lane: rewrites of long loops take long everywhere."""
+LARGEST = 4000
+"""The most expressions of a function with all that it calls: tables of colours take minutes to compile."""
 TRIES = 3
 """How many functions of a file are tried."""
 
@@ -102,7 +105,7 @@ def base_of(origin: str, module: Module, key: str, sources: Mapping[str, Source]
     module = uniforms_to_parameters(module)
     module = drop_unused(module._replace(uniforms=()), False)
     function = next(function for function in module.functions if function.name == name)
-    if any(isinstance(param.type, Sampler) for param in function.params):
+    if any(isinstance(param.type, Sampler) for param in function.params) or _size(module) > LARGEST:
         return None
     chosen = [
         sources.get(param.name, Source(param.name, param.name, param.type, uniform=True))._replace(
@@ -113,6 +116,13 @@ def base_of(origin: str, module: Module, key: str, sources: Mapping[str, Source]
     values = draw_inputs(chosen, DRAWN, suggest_numbers(module), 1)
     return with_results(Base(origin, module, function.key, function.params, function.result, values, np.zeros(0),
                              np.zeros(0)))  # fmt: skip
+
+
+def _size(module: Module) -> int:
+    """The number of expressions of a module."""
+    values = [part for constant in module.constants for part in subexpressions(constant.value)]
+    bodies = [part for function in module.functions for part in all_expressions(function.body or ())]
+    return len(values) + len(bodies)
 
 
 def with_results(base: Base) -> Base | None:
@@ -130,8 +140,7 @@ def with_results(base: Base) -> Base | None:
         places = np.flatnonzero(good)[: 3 * LANES]
         if len(places) < FEWEST:
             return None
-        moved = noise(program, [base.key], dict(base.arguments), {}, places, 12, True)[0]
-        moved = np.fmax(moved, noise(program, [base.key], dict(base.arguments), {}, places, 12, True, at_edges=True)[0])
+        moved = noise(program, [base.key], dict(base.arguments), {}, places, 4, True)[0]
     except (TimeOverError, MemoryError):
         return None
     places = places[moved <= STEADY][:LANES]
@@ -143,32 +152,47 @@ def with_results(base: Base) -> Base | None:
     )
 
 
+def steady_lanes(base: Base) -> Array:
+    """The lanes that rounding does not move, of more runs with errors, and with any outcome of near comparisons."""
+    program, lanes = Program(base.module), np.arange(LANES)
+    arguments = program, [base.key], dict(base.arguments), {}, lanes, 64, True
+    moved = [noise(*arguments, seed=1, at_edges=at_edges)[0] for at_edges in (False, True)]
+    steady: Array = np.fmax(*moved) <= STEADY
+    return steady
+
+
 def text_of(base: Base, module: Module, suffix: str) -> tuple[str, str]:
     """The name of the entry and the text of a rewritten base, whose names at file scope get a suffix."""
     compiled = transpile(module, "glsl-330", "rewritten", "none", [base.key], keep=True)
     text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
     text = re.sub(rf"^\s*uniform\s+ivec4\s+{SWITCHES};\s*$", "", text, flags=re.MULTILINE)
-    names = {*names_of(module), *compiled.reflection["renames"].values()} - {SWITCHES}
-    names |= set(re.findall(r"^(?:const )?\w+ (\w+)\(", text, re.MULTILINE))
-    names |= set(re.findall(r"^struct (\w+)", text, re.MULTILINE))
-    names -= {"main"}
+    fields = {field.name for struct in module.structs for field in getattr(struct.type, "fields", ())}
+    names = set(re.findall(r"^(?:const )?\w+(?:\[\d+\])* (\w+)\s*[(\[=]|^struct (\w+)", text, re.MULTILINE))
+    names = {name for pair in names for name in pair if name}
     entry = compiled.reflection["renames"].get(base.key.partition("(")[0], base.key.partition("(")[0])
-    if names:
-        text = re.sub(rf"(?<![\w.])({'|'.join(sorted(map(re.escape, names), key=len, reverse=True))})\b",
-                      rf"\1{suffix}", text)  # fmt: skip
+    for before, chosen in ((r"(?<![\w.])", names - fields), (r"\b", names & fields)):
+        if chosen:
+            text = re.sub(rf"{before}({'|'.join(map(re.escape, sorted(chosen)))})\b", rf"\1{suffix}", text)
     return f"{entry}{suffix}", text
 
 
 def rewritten_case(base: Base, random: Random, number: int) -> KnownCase:
     """The base with some of its code rewritten, which keeps its results."""
     entry, text = text_of(base, rewritten(base.module, random), f"_r{number}")
-    return KnownCase("rewrite", text, entry, base.result, base.arguments, base.expected, base.valid, base.origin)
+    return case_of("rewrite", base, entry, text)
+
+
+def case_of(kind: str, base: Base, entry: str, text: str) -> KnownCase:
+    """A program with the results of a base."""
+    case = KnownCase(kind, text, entry, base.result, base.arguments, base.expected, base.valid, base.origin)
+    case.steady = partial(steady_lanes, base)
+    return case
 
 
 def same_case(base: Base, number: int) -> KnownCase:
     """The base as it is."""
     entry, text = text_of(base, base.module, f"_r{number}")
-    return KnownCase("base", text, entry, base.result, base.arguments, base.expected, base.valid, base.origin)
+    return case_of("base", base, entry, text)
 
 
 def mutated_case(base: Base, random: Random, number: int) -> KnownCase | None:
@@ -185,5 +209,4 @@ def mutated_case(base: Base, random: Random, number: int) -> KnownCase | None:
     if changed is None:
         return None
     entry, text = text_of(changed, changed.module, f"_r{number}")
-    return KnownCase("mutation", text, entry, base.result, changed.arguments, changed.expected, changed.valid,
-                     base.origin)  # fmt: skip
+    return case_of("mutation", changed, entry, text)
