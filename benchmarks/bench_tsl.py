@@ -22,8 +22,9 @@ from typing import Any
 
 from public_code import Code, Pool, file_errors, read, reason_of, without_names
 from sssgen.analyse.verify.machines import Machines, start_machines
-from sssgen.analyse.verify.verification import Options, verify
+from sssgen.analyse.verify.verification import verify
 from sssgen.analyse.verify.verification_report import Row
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.worker_process import LostError

@@ -10,7 +10,8 @@ from typing import Any
 
 from public_code import READ, reason_of
 from sssgen.analyse.verify.machines import Machines, start_machines
-from sssgen.analyse.verify.verification import Options, verify
+from sssgen.analyse.verify.verification import verify
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.lang.plain_glsl import load_glsl, preprocess_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run import compilers

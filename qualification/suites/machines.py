@@ -1,4 +1,4 @@
-"""The back ends that run the values of suites, started once in each process."""
+"""The back ends that run the values and draw the pictures of suites, started once in each process."""
 
 from __future__ import annotations
 
@@ -6,11 +6,17 @@ import functools
 from contextlib import ExitStack
 
 from sssgen.analyse.verify.machines import Machines, start_machines
+from sssgen.run.backends.backend_process import BackendProcess
 
-BACKENDS = {"numpy": "NumPy", "gl": "GLSL 3.30", "webgpu": "WGSL", "hlsl": "HLSL"}
+BACKENDS = {
+    "numpy": "NumPy", "gl": "GLSL 3.30", "gl-es": "GLSL ES 3.00", "webgpu": "WGSL, naga", "browser": "WGSL, Tint",
+    "hlsl": "HLSL, DXC", "metal": "Metal, stand-in",
+}  # fmt: skip
 """The back ends that run values, and their titles."""
 AUTHOR = "driver"
 """The driver with the author's own text: what it does wrong, no translation is blamed for."""
+SECONDS = 12.0
+"""How long one picture may take."""
 
 _open = ExitStack()
 
@@ -19,3 +25,12 @@ _open = ExitStack()
 def machines() -> Machines:
     """The back ends of this process, which end with it."""
     return _open.enter_context(start_machines(tuple(BACKENDS)))
+
+
+@functools.cache
+def drawing_machines(*names: str) -> dict[str, BackendProcess]:
+    """The back ends of this process for pictures, without those that this machine lacks."""
+    running = _open.enter_context(start_machines(names)).running
+    for machine in running.values():
+        machine.limit_time(SECONDS)
+    return running

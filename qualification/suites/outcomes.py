@@ -9,13 +9,13 @@ RIGHT, WRONG, INVALID, REFUSED, CRASH, ACCEPTED, SKIPPED = (
     "right", "wrong", "invalid", "refused", "crash", "accepted", "skipped",
 )  # fmt: skip
 OUTCOMES = {
-    RIGHT: "the values are as expected, all compilers accept the text, or what is invalid is refused",
+    RIGHT: "the values or the pictures are as expected, all compilers accept the text, or what is invalid is refused",
     WRONG: "another value, and no message",
     INVALID: "a back end refuses the emitted text",
     REFUSED: "sssgen refuses a valid program, with a message",
     CRASH: "an internal error of sssgen",
     ACCEPTED: "sssgen translates a program that a compiler has to refuse",
-    SKIPPED: "the runner cannot run the case: it needs stages or settings that no target has",
+    SKIPPED: "the runner cannot run the case: it needs stages or settings that no target has, or a driver is too slow",
 }
 """Outcome → its meaning."""
 
@@ -41,3 +41,7 @@ class Result(NamedTuple):
     """`values`, `builds`, `must fail` or `skipped`"""
     outcomes: Mapping[str, Outcome]
     """By the name of the back end or of the target"""
+
+
+class SuiteFormatError(Exception):
+    """A file of a suite that is not as its reader expects."""

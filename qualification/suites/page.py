@@ -45,11 +45,7 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         "", "FOLDER has each repository under its own name, at that commit.", "",
         "## Results", "", table(results), "",
         *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
-        "A case with values runs as a function of its inputs: its text is translated, and the results on all inputs "
-        "are compared with those that the suite expects, within the suite's own limit of .05 and 5 %. A case that only "
-        "has to build is translated, with both of its stages where it has them, and each text is compiled: WGSL by "
-        "naga and Tint, HLSL by DXC and glslang, GLSL by the driver and glslang, kernels of Metal by g++ with a "
-        "stand-in for its library.", "",
+        "What a case is:", "", *descriptions(results), "",
         "## What is accepted and should not be", "",
         "| class | cases | why |", "|---|---:|---|",
         *lenience_rows(result for own in results.values() for result in own), "",
@@ -57,6 +53,14 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         *problems(result for own in results.values() for result in own), "",
     ]  # fmt: skip
     return "\n".join(lines)
+
+
+def descriptions(names: Iterable[str]) -> list[str]:
+    """What the cases of suites are: one point for suites that are alike."""
+    alike: dict[str, list[str]] = {}
+    for name in names:
+        alike.setdefault(SUITES[name].about, []).append(name)
+    return [f"- **{', '.join(own)}**: {about}" for about, own in alike.items() if about]
 
 
 def lenience_rows(results: Iterable[Result]) -> list[str]:

@@ -24,10 +24,13 @@ START = "    uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;\n"
 
 
 class InThisProcess:
-    """A back end with the method of one in a process of its own."""
+    """A back end with the methods of one in a process of its own."""
 
     def __init__(self, backend: Backend) -> None:
         self.backend = backend
+
+    def device(self) -> str:
+        return self.backend.device()
 
     def apply(self, function: Callable[..., Any], *arguments: Any) -> Any:
         return function(self.backend, *arguments)
@@ -49,6 +52,7 @@ def test_translations_agree(name: str, verify: Callable[[str], ComputeReport]) -
     assert report.ok
     assert report.rounds == compute_verification.ROUNDS
     assert report.ordered == 0
+    assert report.as_json()["devices"]["gl"].startswith("OpenGL ")
     assert {each.deviation for each in report.differences.values()} == {0.0}
     assert set(report.differences) == {"glsl", "wgsl", "metal"}
 

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
-from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.lane_interpreter import Run
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.rounded_floats import round_floats, seed_errors
-from sssgen.analyse.verify.rounding_noise import GrantedRun, RoundedRun
+from sssgen.analyse.verify.rounding_noise import GrantedRun, RoundedRun, noise
 from sssgen.analyse.verify.verification import load
 
 LOW, HIGH = -(2**31), 2**31 - 1
@@ -150,3 +151,42 @@ int f(int a, int b, float c, float d, int e) {
     return s + deep(count) + e;
 }"""
     assert loop_inputs(load(text, "s.glsl"), "f(int,int,float,float,int)") == {"a", "c", "count"}
+
+
+def test_a_choice_without_lanes_has_a_value() -> None:
+    """Its condition loops without end in every lane, and what follows still computes with the choice."""
+    text = """float lost(float x) { while (true) { x += 1.0; } return x; }
+    float f(float x) { return cosh(lost(x) > 0.0 ? x : 1.0); }"""
+    assert run(text, x=[1.0, 2.0])[1].endless.all()
+
+
+def movement(text: str, at_edges: bool, **arguments: list[float]) -> list[float]:
+    """How far rounding moves the results of the last function."""
+    program = Program(load(text, "shader.glsl"))
+    values = {name: np.array(numbers, np.float64) for name, numbers in arguments.items()}
+    lanes = np.arange(len(next(iter(values.values()))))
+    (moved,) = noise(program, [program.module.functions[-1].key], values, {}, lanes, 64, True, at_edges=at_edges)
+    return moved.tolist()
+
+
+@pytest.mark.parametrize("condition", ["x * 1.3 < y", "step(x * 1.3, y) > 0.5", "lessThan(vec2(x * 1.3), vec2(y)).x"])
+def test_a_comparison_near_its_edge_has_both_outcomes(condition: str) -> None:
+    """No error of the product reaches the third unit in the last place; four times the largest does."""
+    text = f"float f(float x, float y) {{ return {condition} ? 5.0 : 2.0; }}"
+    unit = 2.0**-23
+    product = float(np.float32(1.1)) * float(np.float32(1.3))
+    numbers = {"x": [float(np.float32(1.1))] * 3, "y": [product + step * unit for step in (3, 40, -40)]}
+    assert movement(text, False, **numbers) == [0.0, 0.0, 0.0]
+    assert movement(text, True, **numbers) == [1.5, 0.0, 0.0]
+
+
+def test_equal_operands_without_rounding_are_no_edge() -> None:
+    assert movement("float f(float x, float y) { return x < y ? 1.0 : 2.0; }", True, x=[1.0], y=[1.0]) == [0.0]
+
+
+def test_total_reflection_is_0_in_every_driver() -> None:
+    """Also where the errors of its terms are large; near its edge the ray may be either."""
+    text = "vec3 f(float x) { return refract(vec3(0.0, sqrt(1.0 - x * x), -x), vec3(0.0, 0.0, 1.0), 1000.0); }"
+    far, edge = 0.5, float(np.sqrt(1.0 - 1e-6))
+    assert movement(text, True, x=[far]) == [0.0]
+    assert movement(text, True, x=[edge])[0] > 0.5

@@ -9,8 +9,9 @@ import pytest
 
 from sssgen.analyse.verify import driven_function
 from sssgen.analyse.verify.machines import Machines
-from sssgen.analyse.verify.verification import Options, verify
+from sssgen.analyse.verify.verification import verify
 from sssgen.analyse.verify.verification_report import Coverage, Row
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.pipeline import compiler
 
 Verify = Callable[..., Row]
@@ -78,6 +79,7 @@ vec4 f(vec2 p) { return texture(maps[2], p) + 2.0 * texture(maps[0], p.yx); }
 """,
     "layers": "uniform sampler2DArray maps; vec4 f(vec2 p) { return texture(maps, vec3(p, 1.0)); }",
     "shadow": "float f(sampler2DShadow map, vec3 p) { return texture(map, p); }",
+    "gathered shadow": "vec4 f(sampler2DShadow map, vec2 p, float depth) { return textureGather(map, p, depth); }",
     "integer texels": "ivec4 f(isampler2D map, ivec2 p) { return texelFetch(map, p, 0); }",
     "bits": """
 uint f(uint x, int n) {

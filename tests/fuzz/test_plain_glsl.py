@@ -76,7 +76,6 @@ REFUSED = {
     "what is no text": bytes(range(256)).decode("latin-1") * 100,
     "cases that fall": within("switch (n) { " + "".join(f"case {n}: x += 1.0; " for n in range(2000)) + "}"),
     "a huge array": within("float a[2147483647];"),
-    "a huge literal": within("x = 1" + "0" * 400 + ".0;"),
 }
 TAKEN = {
     "comments": "/* " * DEEP + "*/ float x;" + "//" * DEEP,
@@ -85,6 +84,7 @@ TAKEN = {
     "continued lines": "float x" + "\\\n" * DEEP + ";",
     "many declarators": "float " + ", ".join(f"a{n}" for n in range(2000)) + ";",
     "empty statements": within(";" * DEEP),
+    "a huge literal": within("x = 1" + "0" * 400 + ".0;"),
 }
 
 

@@ -315,14 +315,14 @@ def test_error_directives_and_malformed_directives() -> None:
         ("'##' must be between two tokens", "main", 2, 13),
         ("'##' makes '1;' here, which is not a token", "main", 4, 1),
     ]
-    assert faults("#define A @\n#endif /* x") == [
+    assert faults("#define A @\nA\n#endif /* x") == [
         ("unknown character '@'", "main", 1, 11),
-        ("there is no #if before this #endif", "main", 2, 1),
-        ("this comment is not closed", "main", 2, 8),
+        ("there is no #if before this #endif", "main", 3, 1),
+        ("this comment is not closed", "main", 3, 8),
     ]
-    assert faults('#define A "x\n#define B /* y') == [
+    assert faults('#define A "x\nA\n#define B /* y') == [
         ("this string is not closed on its line", "main", 1, 11),
-        ("this comment is not closed", "main", 2, 11),
+        ("this comment is not closed", "main", 3, 11),
     ]
 
 

@@ -6,6 +6,8 @@ import pytest
 
 from checked_source import checked, text_of
 from sssgen.ir.operators import PRECEDENCE
+from sssgen.ir.text import print_module
+from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.support.diagnostics import SssgenError
 
 AROUND = """
@@ -373,3 +375,15 @@ const int MOST = 64;
 uniform int count : hint_range(1, 64) = 8;
 void f(float a, int i) {{ {loop} }}
 """)
+
+
+def test_a_declaration_of_nothing() -> None:
+    text = "float f(float x) { float; switch (int(x)) { case 0: int; } return x; }\n"
+    assert "return x;" in print_module(load_glsl_text(f"#version 300 es\n{text}", "a.glsl").module, spans=False)
+
+
+def test_the_length_of_a_result_calls_the_function() -> None:
+    text = "int n = 0;\nint[2] f() { n++; int a[2]; return a; }\nint g() { return f().length() * 10 + n; }\n"
+    body = print_module(load_glsl_text(text, "a.glsl").module, spans=False).partition("int g()")[2]
+    assert "measured = $f();" in body
+    assert "2 * 10" in body

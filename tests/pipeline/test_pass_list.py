@@ -59,10 +59,10 @@ def test_the_trace_lists_what_is_drawn_before(tmp_path: Path) -> None:
 def test_the_trace_of_a_failure_ends_before_the_pass_that_failed(tmp_path: Path) -> None:
     source = tmp_path / "f.glsl"
     source.write_text("float k = 1.0 / 0.0;\nfloat f(float x) { return x / 0.0 + 0.0 / 0.0; }\n", "utf-8")
-    command = ["transpile", str(source), "--target", "wgsl", "-o", str(tmp_path / "f.wgsl"), "--trace"]
+    command = ["transpile", str(source), "--target", "tsl", "-o", str(tmp_path / "f.tsl.js"), "--trace"]
     assert main(command) == 2
-    assert [path.name for path in (tmp_path / "f.wgsl.trace").iterdir()] == ["00-input.ir"]
-    assert not (tmp_path / "f.wgsl").exists()
+    assert [path.name for path in (tmp_path / "f.tsl.js.trace").iterdir()] == ["00-input.ir"]
+    assert not (tmp_path / "f.tsl.js").exists()
 
 
 def test_the_trace_of_transpile_needs_an_output_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

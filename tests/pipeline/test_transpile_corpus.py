@@ -16,6 +16,7 @@ from snapshot import check_snapshot
 from sssgen.analyse.verify import verification
 from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.machines import Machines
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.ir.text import print_module
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -104,7 +105,7 @@ def test_a_second_transpilation_changes_nothing(name: str) -> None:
 def check_results(name: str, samples: int, machines: Machines) -> None:
     """Fails where a function's result differs from that of the original text in OpenGL's driver."""
     text = expand((CORPUS / name).read_text("utf-8"), CORPUS / name)
-    report = verification.verify(text, name, verification.Options(samples, 0, entry(name)), machines=machines)
+    report = verification.verify(text, name, Options(samples, 0, entry(name)), machines=machines)
     failures = [
         f"{row.function} as {target}: {result.error or result.at}"
         for row in report.rows

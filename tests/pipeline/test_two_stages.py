@@ -147,8 +147,9 @@ def test_mismatches_name_both_places() -> None:
 
 
 def test_errors_of_both_stages_are_reported_together() -> None:
-    vertex = "attribute vec3 p;\nvoid main() { gl_Position = vec4(p, 1.0 / 0.0); }\n"
-    fragment = "void main() { gl_FragColor = vec4(1.0 / 0.0); }\n"
+    head = "struct S { vec4 v; float f; };\nuniform S s[2];\nint first() { return 0; }\n"
+    vertex = f"{head}attribute vec3 p;\nvoid main() {{ S one = s[first()]; gl_Position = one.v + p.xyzz; }}\n"
+    fragment = f"{head}void main() {{ S one = s[first()]; gl_FragColor = one.v; }}\n"
     with pytest.raises(SssgenError) as error:
         translate(vertex, fragment)
     assert [each.span.file for each in error.value.diagnostics] == ["a.vert", "b.frag"]

@@ -57,7 +57,7 @@ def test_vectors_are_read_and_run(tmp_path: Path) -> None:
     assert matrix.vectors[0].arguments == ((1.0, 3.0, 2.0, 4.0), (1.0, 10.0))
     pytest.importorskip("moderngl", reason="moderngl is missing: pip install -e '.[gl]'")
     (result,) = run_case(matrix)
-    assert {outcome.outcome for outcome in result.outcomes.values()} == {"right"} and len(result.outcomes) == 5
+    assert {outcome.outcome for outcome in result.outcomes.values()} == {"right"} and len(result.outcomes) == 8
     right, wrong = run_case(added)
     assert {outcome.outcome for outcome in right.outcomes.values()} == {"right"}
     assert {outcome.outcome for outcome in wrong.outcomes.values()} == {"wrong"}

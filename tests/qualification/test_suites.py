@@ -106,7 +106,7 @@ def test_each_kind_of_case_has_its_outcome(tmp_path: Path) -> None:
     results = [run_case(case) for case in cases(tmp_path)]
     assert [result.kind for result in results] == ["values", "must fail", "builds", "skipped"]
     assert all(set(outcomes(result).values()) == {"right"} for result in results[:3])
-    assert len(outcomes(results[0])) == 5
+    assert len(outcomes(results[0])) == 8
     accepted = run_case(cases(tmp_path, operand="1.0")[1])
     assert outcomes(accepted) == {"front end": "accepted"}
     wrong = run_case(cases(tmp_path, right="1.7")[0])

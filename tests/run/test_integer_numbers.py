@@ -31,6 +31,7 @@ WRAPPED = [
     ("uint f(uint x) { return x | (3u << 31); }", 5, 2**31 + 5),
     ("int f(int x) { return mix(5, 0, false) + x; }", 2, 7),
     ("int f(int x) { return bitfieldExtract(clamp(2, -5, 9), 0, 8) + x; }", 0, 2),
+    ("uint f(uint x) { return (x | bitfieldExtract(x, -1, 1)) & x; }", 6, 6),
     ("const int K = 1 << 31; int f(int x) { return K / 2 + x; }", 1, -(2**30) + 1),
     ("const int K = 2147483647; int f(int x) { return (K + 1) / 2 + x; }", 0, -(2**30)),
     ("const uint K = 4294967295u; uint f(uint x) { return (K + 1u) / 2u + x; }", 5, 5),

@@ -100,9 +100,9 @@ EQUAL = {
         vertex(
             "struct Lit { vec3 color; float weights[2]; }; struct Seen { Lit lits[2]; mat2 turn; }; out Seen seen;"
             " out Lit pair[2]; out vec2 seen_turn;",
-            "for (int i = 0; i < 2; i++) { seen.lits[i] = Lit(vec3(float(i)), float[2](2.0, 3.0)); "
-            " pair[i].color = vec3(4.0); pair[i].weights = float[2](5.0, 6.0); } seen.turn = mat2(7.0); seen_turn = vec2(8.0);"
-            " if (gl_VertexID >= 0) return; seen.turn = mat2(9.0);",
+            "for (int i = 0; i < 2; i++) { seen.lits[i] = Lit(vec3(float(i)), float[2](2.0, 3.0));"
+            " pair[i].color = vec3(4.0); pair[i].weights = float[2](5.0, 6.0); }"
+            " seen.turn = mat2(7.0); seen_turn = vec2(8.0); if (gl_VertexID >= 0) return; seen.turn = mat2(9.0);",
         ),
         fragment(
             "struct Lit { vec3 color; float weights[2]; }; struct Seen { Lit lits[2]; mat2 turn; }; in Seen seen;"

@@ -1,4 +1,4 @@
-"""Arrays in the interface of a stage: GLSL ES 3.00 has fewer of them, and programs find the others by their names."""
+"""Arrays, structs and integers in the interface of a stage: GLSL ES 3.00 has fewer, and programs name the rest."""
 
 from __future__ import annotations
 
@@ -40,10 +40,21 @@ uniform int n;
 out vec4 color;
 void main() { color = vec4(lights[n].color * sun.fall.near, sun.fall.steps[1].x * grid[n][1]); }
 """
+INTEGERS = """#version 330
+in vec4 place;
+out int kind;
+out uvec2 kinds[2];
+void main() {
+    gl_Position = place;
+    kind = int(place.x);
+    kinds[0] = kinds[1] = uvec2(kind);
+}
+"""
 STAGES: dict[str, tuple[str, Stage]] = {
     "attributes": (ATTRIBUTES, "vertex"),
     "outputs": (OUTPUTS, "fragment"),
     "lights": (LIGHTS, "fragment"),
+    "integers": (INTEGERS, "vertex"),
 }
 
 

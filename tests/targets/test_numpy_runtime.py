@@ -300,6 +300,7 @@ def test_a_comparison_precedes_the_filter() -> None:
     np.testing.assert_array_equal(rt.texture(shade, vec(across, 0.5, reference)), [1, 1, 0.5, 0.5, 0])
     np.testing.assert_array_equal(rt.textureCompare(shade, vec(0.0, 0.5), reference), [1, 1, 0, 0, 0])
     np.testing.assert_array_equal(rt.textureLod(shade, vec(1.0, 0.5, reference), 0.0), [1, 1, 1, 1, 0])
+    assert rt.textureGather(Texture(np.ones((1, 1, 1)), compare=True), np.zeros((2, 1)), 7.0).tolist() == [[1.0]] * 4
     shades = Texture(np.array([[[[0.25]]], [[[0.75]]]]), layers=True, compare=True)
     np.testing.assert_array_equal(rt.texture(shades, vec(0.5, 0.5, np.array([0.0, 1.0]), 0.5)), [0, 1])
 

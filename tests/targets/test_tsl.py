@@ -15,7 +15,8 @@ from folders import TESTS
 from skips import or_skip
 from snapshot import check_snapshot
 from sssgen.analyse.verify.machines import Machines, backends_of, start_machines
-from sssgen.analyse.verify.verification import Options, verify
+from sssgen.analyse.verify.verification import verify
+from sssgen.analyse.verify.verified_function import Options
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import FLOAT, INT, VEC3
 from sssgen.lang.plain_glsl import load_glsl_text

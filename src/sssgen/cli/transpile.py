@@ -243,6 +243,7 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
     from sssgen.analyse.verify import inline_includes as includes
     from sssgen.analyse.verify import verification as transpiled
     from sssgen.analyse.verify.verification_report import Report, Row
+    from sssgen.analyse.verify.verified_function import Options
 
     check_samples(arguments, MAX_SAMPLES)
     for option, seconds in (("--seconds", arguments.seconds), ("--function-seconds", arguments.function_seconds)):
@@ -269,7 +270,7 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
                 lines = [report.head()] if len(report.rows) == 1 else []
                 print("\n".join([*lines, *report.row_lines(row)]), flush=True)
 
-        options = transpiled.Options(
+        options = Options(
             arguments.samples, arguments.seed, arguments.entry, arguments.function, arguments.target or ""
         )
         report = transpiled.verify(text, path.as_posix(), options, progress=progress, limit=limit, show=show)

@@ -114,7 +114,8 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
         head = []  # it documents a declaration
     es = source.version if source.profile == "es" else 0
     extensions = frozenset(extension.partition(":")[0].strip() for extension in source.extensions)
-    module = check_plain(file, reporter, Language(es, _is_vertex(tokens, label), extensions))
+    compute = label.endswith((".comp", ".comp.glsl"))
+    module = check_plain(file, reporter, Language(es, _is_vertex(tokens, label), compute, extensions))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 

@@ -43,6 +43,8 @@ class Capabilities(NamedTuple):
     """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
     lane_control_flow: bool = False
     """Each lane branches for itself; if not, control flow becomes masks."""
+    large_variables: bool = False
+    """A variable of a function may have any size; if not, one of more than 8192 bytes that nothing uses is omitted."""
     layout_overloads: bool = False
     """Overloads may differ in a vec4 and a mat2 alone, or in structs that hold the same numbers."""
     loop_heads: bool = False

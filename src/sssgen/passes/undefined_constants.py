@@ -1,12 +1,14 @@
 """Finds constants without a finite value: 1.0 / 0.0, sqrt(-1.0), normalize(vec3(0.0)), 3e38 * 10.0, 1 << 32.
 
 Why: WGSL refuses a module that holds one, also where it results from module constants, and every other target silently
-gives inf, NaN or an undefined value; so they are an error here, with the place in the source. Place: after `fold`,
-which leaves exactly these constant expressions unchanged.
+gives inf, NaN or an undefined value; so they are an error in a material, with the place in the source. In an author's
+text they are valid, and `late_constants` has the device compute them. Place: after `fold`, which leaves exactly these
+constant expressions unchanged.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from math import isfinite
 from typing import NamedTuple
 
@@ -15,6 +17,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.constant_evaluation import Value, combine
 from sssgen.ir.constant_expressions import constant_numbers
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import Matrix, kind_of, with_article
 from sssgen.ir.walk import expressions, operands, statements
@@ -29,28 +32,31 @@ class Undefined(NamedTuple):
 
 def undefined_constants(module: ir.Module) -> list[Undefined]:
     """The constant expressions of a folded module that have no finite value, each once."""
-    checker = _Checker()
-    for constant in module.constants:
-        checker.constants[constant.name] = checker.value(constant.value)
-    for variable in module.variables:
-        if variable.value is not None:
-            checker.value(variable.value)
-    for function in module.functions:
-        for stmt in statements(function.body or ()):
-            for expr in expressions(stmt):
-                checker.value(expr)
-            if isinstance(stmt, ir.Assign) and stmt.op:
-                checked = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
-                checker.binary(checked, None, checker.value(stmt.value))
-    return list(checker.undefined.values())
+    return list(ConstantChecker(module).undefined.values())
 
 
-class _Checker:
-    """Computes the constant parts of expressions, and records those without a value."""
+class ConstantChecker:
+    """Computes the constant parts of a module's expressions, and records those without a value.
 
-    def __init__(self) -> None:
+    With `partly`, also calls of which some arguments are constants outside of the domain, whatever the others are.
+    """
+
+    def __init__(self, module: ir.Module, partly: bool = False) -> None:
+        self.partly = partly
         self.constants: dict[str, Value | None] = {}
         self.undefined: dict[ir.Span, Undefined] = {}
+        for constant in module.constants:
+            self.constants[constant.name] = self.value(constant.value)
+        for variable in module.variables:
+            if variable.value is not None:
+                self.value(variable.value)
+        for function in module.functions:
+            for stmt in statements(function.body or ()):
+                for expr in expressions(stmt):
+                    self.value(expr)
+                if isinstance(stmt, ir.Assign) and stmt.op:
+                    checked = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+                    self.binary(checked, None, self.value(stmt.value))
 
     def value(self, expr: ir.Expr) -> Value | None:
         """The value of a constant; None for anything else."""
@@ -64,6 +70,8 @@ class _Checker:
         if isinstance(expr, ir.Binary):
             return self.binary(expr, self.value(expr.left), self.value(expr.right))
         parts = [self.value(operand) for operand in operands(expr)]
+        if self.partly and isinstance(expr, ir.Intrinsic) and None in parts and _is_outside(expr.name, parts):
+            return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
         constants = [part for part in parts if part is not None]
         if len(constants) < len(parts):
             return None
@@ -102,6 +110,19 @@ class _Checker:
     def wrong(self, message: str, expr: ir.Expr) -> Value | None:
         self.undefined.setdefault(expr.span, Undefined(message, expr.span))
         return None
+
+
+_PARTS: dict[str, tuple[tuple[int, ...], Callable[..., bool]]] = {
+    "clamp": ((1, 2), lambda low, high: low > high),
+    "smoothstep": ((0, 1), lambda low, high: low >= high),
+}
+"""Builtin → the arguments that WGSL's compilers check by themselves, and where they refuse them."""
+
+
+def _is_outside(name: str, args: Sequence[Value | None]) -> bool:
+    indices, wrong = _PARTS.get(name, ((), bool))
+    numbers = [part for index in indices if (part := args[index]) is not None]
+    return bool(indices) and len(numbers) == len(indices) and any(map(wrong, *numbers))
 
 
 def _exactly(op: str, left: Numbers, right: Numbers) -> list[float]:

@@ -79,7 +79,14 @@ _MATERIAL = Condition("it is a whole material", lambda state: state.material is 
 _SHELL = Condition("the target has no engine", lambda state: state.has_shell)
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
 _NO_LEVELS = _target("has no derivatives in non-uniform flow", lambda can: not can.implicit_levels)
-_NO_UNDEFINED = _target("refuses undefined constants", lambda can: not can.undefined_constants)
+_NEVER_UNDEFINED = _target(
+    "refuses undefined constants and has no module variables",
+    lambda can: not (can.undefined_constants or can.module_variables),
+)
+_LATE = _target(
+    "refuses undefined constants and has module variables",
+    lambda can: can.module_variables and not can.undefined_constants,
+)
 _NO_VARIABLES = _target("has no module variables", lambda can: not can.module_variables)
 _CONSTANT_VALUES = Condition(
     "a module variable can only begin with a constant",
@@ -163,7 +170,8 @@ KEPT: tuple[Pass, ...] = (
     *_SHADER_INPUT,
     Pass("called", steps.drop_uncalled, "leave out the functions that the called ones do not need", _CALLED),
     Pass("roots", steps.find_roots, "take every function as called from outside"),
-    _UNDEFINED._replace(reason="refuse constants without a value", when=_NO_UNDEFINED),
+    _UNDEFINED._replace(reason="refuse constants without a value", when=_NEVER_UNDEFINED),
+    Pass("late_constants", steps.compute_constants_late, "have the device compute constants without a value", _LATE),
     _HOIST._replace(step=steps.hoist_derivatives_of_entry, when=_NO_LEVELS),
     _GUARDS,
 )

@@ -16,6 +16,7 @@ from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
 from sssgen.passes.guards import guard
 from sssgen.passes.hoist import hoist
+from sssgen.passes.late_constants import late_constants
 from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.link import link
 from sssgen.passes.names import Rules, rename
@@ -169,6 +170,12 @@ def refuse_undefined_constants(state: State) -> Module:
         hint = "WGSL refuses it, and the others compute inf, NaN or any value"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
     return state.module
+
+
+def compute_constants_late(state: State) -> Module:
+    module, notes = late_constants(state.module)
+    state.notes += notes
+    return module
 
 
 def prune_unused(state: State) -> Module:

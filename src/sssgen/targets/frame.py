@@ -102,7 +102,8 @@ def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[tuple[str, st
 
 def library(parts: Parts, printed: Iterable[str]) -> str:
     """The parts of the place `library` that the compiler's own texts mention."""
-    return used_parts({LIBRARY: parts.get(LIBRARY, {})}, (), [("", text) for text in printed])[LIBRARY]
+    own = parts.get(LIBRARY)
+    return used_parts({LIBRARY: own}, (), [("", text) for text in printed])[LIBRARY] if own else ""
 
 
 def _mentioned(named: Mapping[str, list[tuple[str, str]]], text: str, stage: str) -> Iterator[tuple[str, str]]:

@@ -138,7 +138,8 @@ def _varyings(vertex: StageFacts) -> list[VaryingRecord]:
     return [
         {
             "name": slot.link or vertex.names.get(slot.variable.name, slot.variable.name), "path": list(slot.path),
-            "type": spell(slot.type), "location": slot.location, "interpolation": interpolation(slot) or "smooth",
+            "type": spell(slot.type), "location": slot.location,
+            "interpolation": interpolation(slot.variable) or "smooth",
         }
         for slot in vertex.program.stage.outputs
         if slot.location >= 0

@@ -50,6 +50,8 @@ class ComputeReport(NamedTuple):
     reason: str = ""
     """Why nothing was compared; '' where something was."""
     missing: Mapping[str, str] = {}
+    devices: Mapping[str, str] = {}
+    """Back end → its compiler, driver, version and device."""
 
     @property
     def ok(self) -> bool:
@@ -69,6 +71,7 @@ class ComputeReport(NamedTuple):
         row |= {"rounds": self.rounds, "numbers": self.numbers, "order_dependent": self.ordered}
         row |= {"order_dependent_places": list(self.order_places), "undefined_rounds": self.undefined}
         row |= {"undefined": list(self.faults), "texts": texts, "missing": dict(self.missing)}
+        row |= {"devices": dict(self.devices)}
         return row | ({"not_run": self.reason} if self.reason else {})
 
     def lines(self) -> Iterator[str]:
@@ -95,5 +98,7 @@ class ComputeReport(NamedTuple):
         if self.undefined and not self.reason:
             faults = "; ".join(self.faults)
             yield f"    not compared: {self.undefined} rounds, in which GLSL leaves the result undefined: {faults}"
+        if self.devices:
+            yield f"ran on: {'; '.join([f'{name}: {device}' for name, device in self.devices.items()])}"
         for name, instruction in self.missing.items():
             yield f"{name} is missing: {instruction}"

@@ -96,7 +96,8 @@ class _Verification:
     def report(self, missing: dict[str, str]) -> ComputeReport:
         written = [buffer.name for buffer in self.buffers if buffer.access != "readonly"]
         total = sum([len(self.layouts[name]) for name in written])
-        report = ComputeReport(self.groups, self.module.workgroup, missing=missing)
+        devices = {name: machine.device() for name, machine in self.machines.items()}
+        report = ComputeReport(self.groups, self.module.workgroup, missing=missing, devices=devices)
         if isinstance(self.compiled["metal"], SssgenError):
             raise self.compiled["metal"]
         if not written:

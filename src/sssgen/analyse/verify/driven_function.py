@@ -22,6 +22,7 @@ from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Array, Bound, Call, Place, Stage, Text
 from sssgen.run.backends import call_program as calls
 from sssgen.run.backends.backend_process import BackendProcess
+from sssgen.run.backends.glsl_reread import draw_reread
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -29,6 +30,8 @@ from sssgen.targets.runtime.numpy_textures import Texture
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 VERSIONS = ("450 core", "330 core", "300 es")
 """The versions to try, where the text has no `#version` or one before 3.30."""
+NEWEST = 450
+"""Drivers without a GPU, and those of macOS, have no later version: its texts are tried as the latest of `VERSIONS`."""
 
 
 class Inputs(NamedTuple):
@@ -37,6 +40,16 @@ class Inputs(NamedTuple):
     values: dict[str, Array]
     """By the probe's parameter or the uniform's name, lanes last."""
     textures: dict[str, Texture]
+
+    @property
+    def lanes(self) -> int:
+        """Their number."""
+        return int(next(iter(self.values.values())).shape[-1])
+
+    def repeated(self, lane: int) -> Inputs:
+        """All lanes with the inputs of this one."""
+        values = {name: np.repeat(value[..., lane : lane + 1], self.lanes, -1) for name, value in self.values.items()}
+        return Inputs(values, self.textures)
 
 
 class _Translation(NamedTuple):
@@ -78,36 +91,39 @@ class DrivenFunction:
             for index, probe in enumerate(self.case.probes)
         }
 
-    def original(self, inputs: Inputs) -> list[Array]:
+    def original(self, inputs: Inputs, reread: bool = False) -> list[Array]:
         """The outputs of the author's text, in the first version that the driver accepts.
 
-        Where it accepts none, functions that this one does not call are removed: the driver may refuse only those.
+        With `reread`, glslang reads the text. Where the driver accepts no version, functions that this one does not
+        call are removed: the driver may refuse only those.
         """
         try:
-            return self.original_of(self.written, inputs)
+            return self.original_of(self.written, inputs, reread)
         except SssgenError:
             called = {function.name for function in self.module.functions}
             others = {name for name in self.written_names if name not in called}
             if not others:
                 raise
             alone = self.written._replace(text=without_functions(self.written.text, others))
-            outputs = self.original_of(alone, inputs)
+            outputs = self.original_of(alone, inputs, reread)
             self.written = alone  # for the next rounds
             return outputs
 
-    def original_of(self, written: Plain, inputs: Inputs) -> list[Array]:
+    def original_of(self, written: Plain, inputs: Inputs, reread: bool) -> list[Array]:
         """The outputs of a text of the author, in the first version that the driver accepts."""
         number = written.version.split(" ")[0]
-        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else VERSIONS
+        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else list(VERSIONS)
+        if number and int(number) > NEWEST and not written.is_es:
+            versions.append(VERSIONS[0])
         refusals: list[SssgenError] = []
         for version in versions:
             try:
-                return self.draw_original(written, version, inputs)
+                return self.draw_original(written, version, inputs, reread)
             except SssgenError as error:
                 refusals.append(error)
         raise refusals[0]
 
-    def draw_original(self, written: Plain, version: str, inputs: Inputs) -> list[Array]:
+    def draw_original(self, written: Plain, version: str, inputs: Inputs, reread: bool) -> list[Array]:
         """The outputs of the author's text, followed by the probes. Its uniforms are bound by their names."""
         probes = "\n".join(probe.text for probe in self.case.probes)
         text = Text(f"{written.for_driver(version)}\n{probes}")
@@ -122,7 +138,8 @@ class DrivenFunction:
         values = {name: inputs.values[name][..., 0] for name in uniforms if name in inputs.values}
         vertex = Stage(Text(f"#version {version}\n{_SCREEN}"))
         drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
-        return calls.results(probe_calls, layout, self.machines["gl"].draw(drawing))
+        gl = self.machines["gl"]
+        return calls.results(probe_calls, layout, gl.apply(draw_reread, drawing) if reread else gl.draw(drawing))
 
     def run_translation(self, backend: str, inputs: Inputs) -> list[Array]:
         """The outputs of the translation for a back end."""

@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.analyse.verify.branch_outcomes import Outcomes, Site
-from sssgen.analyse.verify.lane_interpreter import ROUNDS, Program, Run
+from sssgen.analyse.verify.lane_interpreter import ROUNDS, Run
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.plain_inputs import (
     Numbers,
     Source,

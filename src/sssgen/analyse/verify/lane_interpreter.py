@@ -18,18 +18,17 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.analyse.verify.branch_edges import JUMPS, branch_distance
 from sssgen.analyse.verify.branch_outcomes import CASES, Outcomes
 from sssgen.analyse.verify.few_lanes import are_few, run_alone
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.lane_values import DTYPES, Value, is_readable, spread_to_quads, zero
-from sssgen.analyse.verify.loop_inputs import is_counted
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.intrinsics.table import LARGEST
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import VOID, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.types import Array as ArrayType
-from sssgen.ir.walk import all_expressions, builtins_of, statements
-from sssgen.passes.scopes import separate
 from sssgen.run.backends import Array
 from sssgen.run.backends import call_program as calls
 from sssgen.targets import numpy_runtime as rt
@@ -50,32 +49,6 @@ _UNARY: dict[str, Callable[..., Value]] = {"-": np.negative, "!": np.logical_not
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "==", "!="})
 ONE_THREAD = 8192
 """The most numbers that a product of vectors adds in one thread; starting more takes longer than the sum."""
-
-
-class Program:
-    """A module that can be run; its nodes keep their identities from run to run."""
-
-    def __init__(self, module: ir.Module, check: Callable[[], None] = lambda: None) -> None:
-        self.check = check
-        """Called at each call of a function and each round of a loop; it may raise an error to end the run."""
-        self.module = module._replace(functions=tuple([separate(function) for function in module.functions]))
-        self.functions = {function.key: function for function in self.module.functions}
-        self.neighbours = any(BUILTINS[name].kind == "derivative" for name in builtins_of(self.module))
-        """Whether lanes read values of other lanes."""
-        constants = {constant.name for constant in module.constants}
-        nodes = [stmt for function in self.module.functions for stmt in statements(function.body or ())]
-        self.counted = {id(stmt) for stmt in nodes if isinstance(stmt, ir.For) and is_counted(stmt, constants)}
-        """The ids of loops that count from a constant to a constant."""
-        self.long_branches = {id(stmt) for stmt in nodes if isinstance(stmt, ir.If) and _is_long(stmt)}
-        """The ids of the branches with calls or loops."""
-
-
-def _is_long(branch: ir.If) -> bool:
-    parts = [part for block in (branch.then, branch.otherwise) for part in statements(block)]
-    calls_functions = any(
-        isinstance(part, ir.Call) for block in (branch.then, branch.otherwise) for part in all_expressions(block)
-    )
-    return calls_functions or any(isinstance(part, ir.For | ir.While) for part in parts)
 
 
 class Run:
@@ -338,8 +311,8 @@ class Run:
         return value
 
     def operate(self, node: object, op: str, left_type: Type, right_type: Type, left: Value, right: Value) -> Value:
-        if op in _COMPARISONS and self.outcomes is not None and isinstance(left, np.ndarray):
-            self.outcomes.comparison(node, 0, left, right, self.active)
+        if op in _COMPARISONS and isinstance(left, np.ndarray):
+            left, right = self.compared(node, 0, left, right)
         if op in ("==", "!="):
             same = rt.equals(left, right)
             return same if op == "==" else ~same
@@ -370,21 +343,21 @@ class Run:
         condition = self.condition(expr.condition, expr)
         yes, no = self.within(condition, expr.yes), self.within(~condition, expr.no)
         if yes is None or no is None:
-            return no if yes is None else yes
+            known = no if yes is None else yes
+            return zero(expr.type) if known is None else known  # none where the condition has lost every lane
         return rt.select(condition, yes, no)
 
     def intrinsic(self, expr: ir.Intrinsic) -> Value:
         args = [self.value(arg) for arg in expr.args]
         name = expr.name
         row = BUILTINS[name]
-        if self.outcomes is not None and name in CASES:
-            for comparison, (left, right) in enumerate(CASES[name]):
-                other = right if isinstance(right, float) else args[right]
-                self.outcomes.comparison(expr, comparison, args[left], other, self.active)
+        self.compare_inside(expr, args)
         if row.defined is not None and (name != "abs" or kind_of(expr.type) == "int"):
             self.require(np.asarray(row.defined(rt, *args)))
         if row.kind == "fetch" and len(args) > 1 and np.asarray(args[1]).dtype.kind == "f":
             self.require(is_readable(args[0], args[1]))
+            if args[0].compare and name.startswith("textureGather"):
+                self.require((args[2] >= 0.0) & (args[2] <= 1.0))  # only depths of fixed point clamp their references
         if row.kind == "derivative" and not self.active.all():
             self.require(np.zeros(1, bool))
         level = 1 if row.size_query else 2 if row.by_texel else 0
@@ -394,10 +367,33 @@ class Run:
             args[level] = np.clip(args[level], 0, last)
         function: Any = getattr(rt, "not_" if name == "not" else name)
         args = self.read_from(row, args)
-        result = getattr(function, "__wrapped__", function)(*args)
+        result = self.on_side(expr, args, getattr(function, "__wrapped__", function)(*args))
         if isinstance(result, np.ndarray) and result.dtype.kind == "f":
             return self.inexact(row, args, self.finite(result.astype(np.float64, copy=False)))
         return np.asarray(result)
+
+    def compared(self, node: object, comparison: int, left: Value, right: Value) -> tuple[Value, Value]:
+        """Records a comparison, and returns what is compared."""
+        if self.outcomes is not None:
+            self.outcomes.comparison(node, comparison, left, right, self.active)
+        return left, right
+
+    def compare_inside(self, expr: ir.Intrinsic, args: list[Value]) -> None:
+        """Records the comparisons inside a builtin; `args` become what is compared where its result jumps."""
+        for comparison, (left, right) in enumerate(CASES.get(expr.name, ())):
+            other = right if isinstance(right, float) else args[right]
+            pair = self.compared(expr, comparison, args[left], other)
+            if expr.name in JUMPS:
+                args[left] = pair[0]
+                if not isinstance(right, float):
+                    args[right] = pair[1]
+
+    def on_side(self, expr: ir.Intrinsic, args: list[Value], result: Value) -> Value:
+        """The result of a builtin that branches on a number which it computes itself."""
+        distance = branch_distance(expr.name, args) if self.outcomes is not None else None
+        if distance is not None:
+            self.compared(expr, 0, distance, 0.0)
+        return result
 
     def read_from(self, row: Any, args: list[Value]) -> list[Value]:
         """The arguments of a builtin; those of a read from a texture may have an error."""

@@ -17,12 +17,12 @@ SECONDS = 30.0
 
 
 def backends_of(target: str) -> tuple[str, ...]:
-    """The back ends that run a target's text, and the author's; '' for all. Raises SssgenError."""
+    """The back ends that run a target's text, the author's, and NumPy, a witness; '' for all. Raises SssgenError."""
     if not target:
         return tuple(BACKENDS.values())
     if target not in TRANSLATIONS:
         raise failure(f"--verify runs no text of the target '{target}'", f"choose from: {', '.join(TRANSLATIONS)}")
-    return tuple(dict.fromkeys(["gl", *TRANSLATIONS[target].values()]))
+    return tuple(dict.fromkeys(["gl", "numpy", *TRANSLATIONS[target].values()]))
 
 
 class Machines(NamedTuple):

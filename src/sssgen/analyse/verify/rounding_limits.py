@@ -17,8 +17,9 @@ FIRST = 16
 FEW = 512
 """Lanes that take about as long as one."""
 
-Measure = Callable[[Array, int], Mapping[str, Array]]
-"""The largest movement of each output in these lanes, in so many runs with errors."""
+Measure = Callable[[Array, int, bool], Mapping[str, Array]]
+"""The largest movement of each output in these lanes, in so many runs with errors; with True, in these the
+comparisons that rounding decides have any outcome."""
 
 
 class RoundingLimits:
@@ -28,7 +29,7 @@ class RoundingLimits:
         self.measure = measure
         self.limits: dict[str, Array] = {}
         self.draws: Array = np.zeros(0, np.int64)
-        """How many runs with errors each lane had."""
+        """How many runs with errors each lane had; one more than all: both outcomes of its comparisons were tried."""
 
     def unexplained(self, deviations: Mapping[str, Array], lanes: Array) -> tuple[Array, Array]:
         """Of these lanes, those whose deviations rounding does not explain, and those that the time leaves undecided.
@@ -51,14 +52,25 @@ class RoundingLimits:
         return left & ~undecided, undecided & left
 
     def measure_enough(self, deviations: Mapping[str, Array], lanes: Array) -> None:
-        """Runs these lanes with errors until their deviations are explained, or had all draws. Raises TimeOverError."""
+        """Runs these lanes with errors until their deviations are explained, or had all draws.
+
+        Then the comparisons that rounding decides have any outcome. Raises TimeOverError.
+        """
         for draws in DRAWS_EACH:
             pending = lanes[~self.explains(deviations)[lanes] & (self.draws[lanes] < draws)]
             if len(pending):
                 count = min(max(draws, FEW // len(pending)), DRAWS_EACH[-1])
-                for output, moved in self.measure(pending, count).items():
-                    self.limits[output][pending] = np.maximum(self.limits[output][pending], moved)
+                self.add(pending, self.measure(pending, count, False))
                 self.draws[pending] = count
+        pending = lanes[~self.explains(deviations)[lanes] & (self.draws[lanes] <= DRAWS_EACH[-1])]
+        if len(pending):
+            self.add(pending, self.measure(pending, DRAWS_EACH[-1], True))
+            self.draws[pending] = DRAWS_EACH[-1] + 1
+
+    def add(self, lanes: Array, moved: Mapping[str, Array]) -> None:
+        """The results of these lanes may move by so much."""
+        for output, movement in moved.items():
+            self.limits[output][lanes] = np.maximum(self.limits[output][lanes], movement)
 
     def explains(self, deviations: Mapping[str, Array]) -> Array:
         """Whether rounding explains the deviations of all outputs, in each lane."""

@@ -8,17 +8,21 @@ table of builtins grants; derivatives of another driver may be those of one row 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.branch_edges import Edges, branch_distance, edges_of, on_side
+from sssgen.analyse.verify.branch_outcomes import Outcomes
+from sssgen.analyse.verify.lane_interpreter import Run
+from sssgen.analyse.verify.lane_program import Program
 from sssgen.analyse.verify.lane_values import DTYPES, Value, build_value
 from sssgen.analyse.verify.plain_inputs import select_lanes
 from sssgen.analyse.verify.rounded_floats import draw, errors_of_lanes, round_floats, seed_errors, with_error
 from sssgen.ir.intrinsics.table import LARGEST
+from sssgen.ir.nodes import Intrinsic
 from sssgen.ir.types import Type
 from sssgen.run.backends import Array
 from sssgen.run.backends.call_program import grid
@@ -27,6 +31,8 @@ from sssgen.targets import numpy_runtime as rt
 
 CHUNK = 8192
 """How many lanes are run together."""
+EDGE_DRAWS = 8
+"""How many runs measure how far the operands of comparisons move."""
 
 
 UNDETERMINED = 0.5
@@ -41,12 +47,35 @@ class RoundedRun(Run):
     """A run with a random error of each operation; `granted` adds those that the table grants to builtins."""
 
     granted = False
+    edges: Edges | None = None
+    """The comparisons that may have any outcome."""
 
     def number(self, value: Value) -> Value:
         return round_floats(value)
 
-    def of_lanes(self, chosen: Array) -> AbstractContextManager[None]:
-        return errors_of_lanes(chosen)
+    @contextmanager
+    def of_lanes(self, chosen: Array) -> Iterator[None]:
+        edges = self.edges
+        self.edges = edges.of_lanes(chosen) if edges is not None else None
+        try:
+            with errors_of_lanes(chosen):
+                yield
+        finally:
+            self.edges = edges
+
+    def compared(self, node: object, comparison: int, left: Value, right: Value) -> tuple[Value, Value]:
+        left, right = super().compared(node, comparison, left, right)
+        if self.edges is None or np.asarray(left).dtype.kind != "f":
+            return left, right
+        distance = self.edges.moved(node, comparison, left - right)
+        return distance, np.zeros_like(distance)
+
+    def on_side(self, expr: Intrinsic, args: list[Value], result: Value) -> Value:
+        result = super().on_side(expr, args, result)
+        distance = branch_distance(expr.name, args) if self.edges is not None else None
+        if self.edges is None or distance is None:
+            return result
+        return on_side(expr.name, args, self.edges.moved(expr, 0, distance))
 
     def finite(self, value: Value) -> Value:
         self.require_size(np.asarray(value), NEARLY_LARGEST)  # in another order, its terms may overflow
@@ -65,7 +94,11 @@ class RoundedRun(Run):
             return result
         if self.granted and row.size is not None:  # other formulas are allowed, whose terms cancel: x + (y - x) * a
             size = np.abs(np.asarray(row.size(rt, *[np.asarray(arg) for arg in args]))).astype(np.float32)
-            return with_error(result, 0.0, row.ulp * np.spacing(size))
+            moved = with_error(result, 0.0, row.ulp * np.spacing(size))
+            if branch_distance(row.name, args) is None:
+                return moved
+            plain = np.asarray(result)  # what a branch sets to 0 is 0 in every driver
+            return np.where((plain == 0.0).all(axis=0) if plain.ndim > 1 else plain == 0.0, 0.0, moved)
         if row.kind == "alu" and row.ulp <= 4.0:
             return result
         if not self.granted:
@@ -120,12 +153,14 @@ def is_explained(error: Array, limit: Array) -> Array:
 
 def noise(
     program: Program, keys: Sequence[str], values: Mapping[str, Array], textures: Mapping[str, Any], lanes: Array,
-    draws: int, granted: bool, seed: int = 0,
+    draws: int, granted: bool, seed: int = 0, at_edges: bool = False,
 ) -> list[Array]:  # fmt: skip
     """For the result of each function the largest movement in these lanes, relative as that of `errors`.
 
-    It is infinite where rounding makes an operation undefined.
+    It is infinite where rounding makes an operation undefined. With `at_edges`, comparisons that rounding decides have
+    any outcome (`branch_edges`), and the movement is 0 in functions without such a comparison.
     """
+    kind = GrantedRun if granted else RoundedRun
     chosen = dict(values) if program.neighbours else select_lanes(dict(values), lanes)
     count = next(value.shape[-1] for value in chosen.values())
     repeats = 1 if program.neighbours else max(1, min(draws, CHUNK // max(count, 1)))
@@ -134,25 +169,54 @@ def noise(
     for key in keys:
         exact, _ = result(Run, program, key, chosen, textures)
         largest = np.zeros(count)
+        edges = find_edges(program, key, chosen, textures, kind, seed) if at_edges else None
+        if edges is not None:
+            edges = edges.of_lanes(np.tile(np.arange(count), repeats))
+        elif at_edges:
+            results.append(largest[lanes] if program.neighbours else largest)
+            continue
         if granted:  # compilers may compute constants in higher precision
             other = Run(program, count, {**textures, **chosen}, exact_literals=True)
             largest = _apart(_first(other.result(key, {**textures, **chosen})), exact)
         expected = np.concatenate([exact] * repeats)
         for number in range(-(-draws // repeats)):
             with seed_errors(1000 * seed + number):
-                actual, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
+                actual, undefined = result(kind, program, key, repeated, textures, edges)
             moved = np.where(undefined, np.inf, _apart(actual, expected)).reshape(repeats, count).max(axis=0)
             largest = np.maximum(largest, moved)
         results.append(largest[lanes] if program.neighbours else largest)
     return results
 
 
+def find_edges(
+    program: Program, key: str, values: Mapping[str, Array], textures: Mapping[str, Any], kind: type[RoundedRun],
+    seed: int,
+) -> Edges | None:  # fmt: skip
+    """The comparisons of a function that rounding decides in some lane."""
+    everything = {**textures, **values}
+    lanes = next(value.shape[-1] for value in values.values())
+
+    def outcomes(kind: type[Run]) -> Outcomes:
+        outcomes = Outcomes(lanes)
+        kind(program, lanes, everything, outcomes).result(key, everything)
+        return outcomes
+
+    rounded = []
+    for number in range(EDGE_DRAWS):
+        with seed_errors(1000 * seed + number):
+            rounded.append(outcomes(kind))
+    return edges_of(outcomes(Run), rounded)
+
+
 def result(
-    kind: type[Run], program: Program, key: str, values: Mapping[str, Array], textures: Mapping[str, Any]
-) -> tuple[Array, Array]:
+    kind: type[Run], program: Program, key: str, values: Mapping[str, Array], textures: Mapping[str, Any],
+    edges: Edges | None = None,
+) -> tuple[Array, Array]:  # fmt: skip
     """The result of a function, lanes first, and the lanes in which it is undefined."""
     lanes = next(value.shape[-1] for value in values.values())
     run = kind(program, lanes, {**textures, **values})
+    if isinstance(run, RoundedRun):
+        run.edges = edges
     value = run.result(key, {**textures, **values})
     return _first(value), run.undefined | run.endless
 

@@ -34,6 +34,10 @@ class Comparison(NamedTuple):
     error: str = ""
     undecided: int = 0
     """The number of lanes that deviate, for which the time did not suffice to say whether rounding explains it."""
+    driver: int = 0
+    """The number of lanes in which the driver is at fault, and this translation agrees with the other witnesses."""
+    against: tuple[str, ...] = ()
+    """The witnesses that it disagrees with: the driver, and perhaps NumPy and the interpreter."""
 
     @property
     def ok(self) -> bool:
@@ -56,6 +60,35 @@ class Coverage(NamedTuple):
     """Such as `line 12 (else)`."""
 
 
+class Finding(NamedTuple):
+    """Lanes in which NumPy, the interpreter and translations agree against the driver."""
+
+    driver: bool
+    """Whether the driver is at fault; else sssgen's reading of the text is."""
+    lanes: int
+    at: str
+    """The place, the driver's value, that of the others, and the inputs."""
+    agreeing: tuple[str, ...]
+    """Who agrees against the driver."""
+    evidence: str
+    """Why it is at fault, or is not."""
+
+    @property
+    def line(self) -> str:
+        """The finding for people."""
+        others = f"{', '.join(self.agreeing[:-1])} and {self.agreeing[-1]}"
+        whose = "the driver is wrong" if self.driver else "the driver disagrees"
+        count = f"{self.lanes} lane{'s' * (self.lanes != 1)}"
+        return f"{whose} in {count}: {others} agree against it, {self.evidence}; {self.at}"
+
+    def as_json(self) -> dict[str, Any]:
+        """The finding for programs."""
+        blamed = "driver" if self.driver else "reading"
+        return {"blamed": blamed, "lanes": self.lanes, "at": self.at, "agree": list(self.agreeing)} | {
+            "evidence": self.evidence
+        }
+
+
 class Row(NamedTuple):
     """The result for one function."""
 
@@ -76,6 +109,8 @@ class Row(NamedTuple):
     """Why not all inputs were tried; '' where they were."""
     complete: bool = True
     """False where the function was not run because the time was over."""
+    finding: Finding | None = None
+    """Lanes in which all others agree against the driver; None where there are none."""
 
     @property
     def undecided(self) -> int:
@@ -128,11 +163,14 @@ class Row(NamedTuple):
             | ({"undecided": comparison.undecided} if comparison.undecided else {})
             | ({"at": comparison.at} if comparison.at else {})
             | ({"error": comparison.error} if comparison.error else {})
+            | ({"driver": comparison.driver} if comparison.driver else {})
+            | ({"against": list(comparison.against)} if comparison.against else {})
             for name, comparison in self.comparisons.items()
         }
         reached, outcomes, never = self.branches
         branches = {"outcomes": outcomes, "taken": reached, "never": list(never)}
         row |= {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
+        row |= {"finding": self.finding.as_json()} if self.finding is not None else {}
         return row | ({"partly": self.partly} if self.partly else {})
 
 
@@ -148,6 +186,13 @@ class Report(NamedTuple):
     width: int = 0
     """The number of characters of the longest function."""
     interrupted: bool = False
+    devices: Mapping[str, str] = {}
+    """Back end → its compiler, driver, version and device."""
+
+    @property
+    def driver_findings(self) -> list[str]:
+        """The functions in which the driver is wrong."""
+        return [row.function for row in self.rows if row.finding is not None and row.finding.driver]
 
     @property
     def ok(self) -> bool:
@@ -159,7 +204,8 @@ class Report(NamedTuple):
         """The report for programs."""
         complete = all(row.complete and not row.partly for row in self.rows)
         rows = [row.as_json() for row in self.rows]
-        return {"goal": GOAL, "complete": complete, "functions": rows, "missing": self.missing}
+        facts = {"missing": self.missing, "devices": dict(self.devices), "driver_findings": self.driver_findings}
+        return {"goal": GOAL, "complete": complete, "functions": rows, **facts}
 
     @property
     def available(self) -> list[str]:
@@ -191,14 +237,20 @@ class Report(NamedTuple):
             if comparison.error:
                 yield f"    {name} does not run: {comparison.error}"
             elif not comparison.ok and not row.reason:
-                yield f"    {name} {comparison.at}"
+                yield f"    {name} {comparison.at}{_against(comparison.against)}"
+        if row.finding is not None:
+            yield f"    {row.finding.line}"
         if row.branches.never:
             yield f"    never taken: {', '.join(row.branches.never)}"
         if row.partly:
             yield f"    partly verified: {row.partly}"
 
     def last_lines(self) -> Iterator[str]:
-        """What is missing: back ends, and functions or inputs that the time did not suffice for."""
+        """Where it ran, faults of the driver, and what is missing: back ends, functions, inputs."""
+        if self.devices:
+            yield f"ran on: {'; '.join([f'{name}: {device}' for name, device in self.devices.items()])}"
+        if self.driver_findings:
+            yield f"the driver is wrong, not the translation: {', '.join(self.driver_findings)}"
         for name, instruction in self.missing.items():
             yield f"{name} is missing: {instruction}"
         partly = [row.function for row in self.rows if row.partly]
@@ -209,3 +261,9 @@ class Report(NamedTuple):
             yield f"not reached: {', '.join(unreached)}"
         if (partly or unreached) and not self.interrupted:
             yield "more time: --seconds N for the file, --function-seconds N for each function; 0 is no limit"
+
+
+def _against(witnesses: tuple[str, ...]) -> str:
+    """Which of the witnesses disagree with a translation, beside the driver."""
+    others = {"driver": "the author's text in the driver", "oracle": "NumPy", "interpreter": "the interpreter"}
+    return f"; it disagrees with {' and '.join([others[name] for name in witnesses])}" if witnesses[1:] else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Type, Vector
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Field, Struct, Type, Vector
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.syntax import tree as s
@@ -40,6 +40,9 @@ DRAW_UNIFORMS: dict[str, Type] = {
 }  # fmt: skip
 """The variables that are the same in a whole draw call (OVR_multiview2, ANGLE_multi_draw) and that WebGPU and D3D lack.
 They become uniforms, which a loop over views or draws sets."""
+
+_DEPTH_RANGE = Struct("gl_DepthRangeParameters", tuple([Field(name, FLOAT, "") for name in ("near", "far", "diff")]))
+"""The type of gl_DepthRange, which becomes a uniform: WebGPU and D3D have it in the viewport alone."""
 
 _SAME = {"gl_FragDepthEXT": "gl_FragDepth", "gl_VertexIndex": "gl_VertexID", "gl_InstanceIndex": "gl_InstanceID"}
 
@@ -78,6 +81,13 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
         message = f"{text} becomes a uniform: set it for each draw call"
         context.reporter.warn(name.span, message)
         return constant
+    if text == "gl_DepthRange":
+        context.structs[_DEPTH_RANGE.name] = _DEPTH_RANGE
+        context.struct_declarations.append(ir.StructDecl(_DEPTH_RANGE, "", name.span))
+        context.draw_uniforms.append(ir.Uniform(text, _DEPTH_RANGE, (0.0, 1.0, 1.0), (), "", "", name.span))
+        depths = context.globals[text] = GlobalValue(_DEPTH_RANGE, "")
+        context.reporter.warn(name.span, "gl_DepthRange becomes a uniform: set its members to the viewport's depths")
+        return depths
     if text not in BUILTIN_VARIABLES:
         return None
     type_, storage = BUILTIN_VARIABLES[text]

@@ -12,7 +12,7 @@ from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import candidates, overload, resolve
-from sssgen.ir.types import FLOAT, INT, Sampler, Type, components, kind_of, spell, vector_of
+from sssgen.ir.types import FLOAT, INT, VOID, Sampler, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.assignment_checker import check_writable
@@ -142,6 +142,8 @@ class CallChecker:
             raise self.context.fail(call.span, f"{a_type(value.type)} has no length()")
         if element[1] == 0:
             return self.memory.length(value, call)
+        if any(isinstance(part, ir.Call) for part in subexpressions(value)):
+            self.context.function.temporary("measured", value)  # what the calls do is done
         return Typed(ir.Literal(INT, element[1], call.span))
 
     def overload(self, name: str, args: list[Typed], call: s.CallOf) -> Signature:
@@ -170,25 +172,48 @@ class CallChecker:
         outs = [index for index, direction in enumerate(signature.directions) if direction != "in"]
         self.expressions.fix_outs(args, outs)
         values: list[ir.Expr] = []
+        given_back: list[ir.Assign] = []
         for index, (arg, written) in enumerate(zip(args, call.args, strict=True)):
             type_, direction = signature.types[index], signature.directions[index]
             quantity, value = signature.quantities[index], arg.expr
             what = f"argument {index + 1} ('{signature.names[index]}') of {name}"
-            if direction != "out" or value.type != type_:  # the value of an out argument is not read
+            is_other = direction == "out" and value.type != type_ and self.context.converts
+            is_converted = is_other and converts(type_, value.type)
+            if not is_converted and (
+                direction != "out" or value.type != type_
+            ):  # the value of an out argument is not read
                 value = self.expressions.require(arg, type_, quantity, written.span, what)
             if direction != "in":
                 value = arg.expr
-                if value.type != type_:
+                if is_converted:
+                    check_writable(self.context, value, written.span)
+                    result = self.context.function.temporary(signature.names[index], None, type_=type_)
+                    back = as_kind(result, kind_of(value.type))
+                    given_back.append(ir.Assign(value, "", back, written.span))
+                    value = result
+                elif value.type != type_:
                     message = f"{what} is {a_type(type_)}, but the variable is {a_type(value.type)}"
                     raise self.context.fail(
-                        written.span, message, "an out argument is not converted: use a variable of the same type"
+                        written.span, message, "this out argument is not converted: use a variable of the same type"
                     )
                 check_writable(self.context, value, written.span)
                 if arg.quantity and quantity != arg.quantity:
                     message = f"{what} returns {q.words(quantity)}, but the variable holds {q.words(arg.quantity)}"
                     raise self.context.fail(written.span, message, q.conversion(quantity, arg.quantity))
             values.append(value)
-        return Typed(ir.Call(signature.result, signature.key, tuple(values), call.span), signature.quantity)
+        value = ir.Call(signature.result, signature.key, tuple(values), call.span)
+        return Typed(self.with_results(value, given_back) if given_back else value, signature.quantity)
+
+    def with_results(self, call: ir.Call, given_back: list[ir.Assign]) -> ir.Expr:
+        """The result of a call, which is executed before the results of its out arguments are converted."""
+        function = self.context.function
+        if call.type == VOID:
+            result: ir.Expr = ir.Literal(VOID, 0, call.span)
+            function.prelude.append(ir.Evaluate(call, call.span))
+        else:
+            result = function.temporary("result", call)
+        function.prelude += given_back
+        return result
 
     def call_intrinsic(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
         """A call of a builtin."""
@@ -261,7 +286,9 @@ _WITH_BIAS = {"texture": 3, "textureOffset": 4}
 def _is_viable(signature: Signature, types: tuple[Type, ...]) -> bool:
     """Whether a call with arguments of these types may call this function."""
     return len(signature.types) == len(types) and all(
-        type_ == param or (direction == "in" and converts(type_, param))
+        type_ == param
+        or (direction == "in" and converts(type_, param))
+        or (direction == "out" and converts(param, type_))
         for type_, param, direction in zip(types, signature.types, signature.directions, strict=True)
     )
 

@@ -74,6 +74,10 @@ class ConstructorChecker:
         if self.context.plain and values and isinstance(values[-1].type, Matrix) and isinstance(type_, Vector):
             values = self.with_columns(values, components(type_))
             args = [Typed(value) for value in values]
+        if self.context.plain and len(values) == 1 and isinstance(values[0].type, Matrix) and isinstance(type_, Scalar):
+            column = ir.Index(Vector("float", values[0].type.rows), values[0], ir.Literal(INT, 0, call.span), call.span)
+            values = (ir.Swizzle(FLOAT, column, "x", call.span),)
+            args = [Typed(value) for value in values]
         if len(values) == 1 and type_ == Matrix(2, 2) and components(values[0].type) == 4 and kind_of(values[0].type):
             values = self.halves(values[0])
             args = [Typed(value) for value in values]

@@ -21,6 +21,8 @@ class Language(NamedTuple):
     """The version of GLSL ES that the file names, or 0"""
     vertex: bool = False
     """Whether it is a vertex shader"""
+    compute: bool = False
+    """Whether it is a compute shader by its name, also without the size of its workgroup"""
     extensions: frozenset[str] = frozenset()
     """The names of the extensions that it asks for"""
 

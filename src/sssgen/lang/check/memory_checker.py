@@ -166,10 +166,10 @@ class MemoryChecker:
         function.prelude.append(ir.MemoryOperation(row.name, values, result, span))
         return Typed(result if result is not None else ir.Literal(VOID, 0, span))
 
-    def find_stage(self, file: str) -> None:
+    def find_stage(self) -> None:
         """Makes a compute shader without a size, whose workgroups have one invocation, a compute shader."""
         context = self.context
-        if not context.workgroup and (file.endswith(".comp") or INVOCATION & context.variables.keys()):
+        if not context.workgroup and (context.language.compute or INVOCATION & context.variables.keys()):
             context.workgroup = (1, 1, 1)
 
     def check_stage(self) -> None:

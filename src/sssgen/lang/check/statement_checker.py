@@ -149,6 +149,8 @@ class StatementChecker:
 
     def expression(self, statement: s.ExpressionStatement) -> list[ir.Stmt]:
         plain, value = self.context.plain, statement.value
+        if plain and isinstance(value, s.TypeName):  # a declaration of nothing, `float;`
+            return []
         if isinstance(value, s.Comma) or (plain and isinstance(value, s.Conditional)):
             self.assignments.effect(value)
             return []

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
 from typing import NamedTuple
 
 from sssgen.ir.spans import Span
@@ -40,6 +41,8 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
     cases, default = list[Case](), None
     for index, (labels, _) in enumerate(groups):
         body = _statements_of([statements for _, statements in groups[index:]])
+        earlier = [statement for _, statements in groups[:index] for statement in statements]
+        body = (*_declared_before(earlier, body), *body)
         context.function.case_statements += len(body)
         if context.function.case_statements > MAX_STATEMENTS:
             hint = "end the cases with break"
@@ -66,6 +69,41 @@ def _statements_of(groups: list[list[s.Statement]]) -> tuple[s.Statement, ...]:
                 return (*body, *last)
             body.append(statement)
     return tuple(body)
+
+
+def _declared_before(earlier: list[s.Statement], body: tuple[s.Statement, ...]) -> Iterator[s.Statement]:
+    """The declarations of earlier cases that a case uses, without the values, which it does not compute: all cases are
+    one scope."""
+    declarations = [statement for statement in earlier if isinstance(statement, s.Declaration)]
+    if not declarations:
+        return
+    own = {name for statement in body if isinstance(statement, s.Declaration) for name in _names(statement)}
+    used = set(_words(body)) - own
+    for declaration in declarations:
+        is_const = "const" in declaration.qualifiers.keywords
+        declarators = [
+            declarator if is_const else replace(declarator, value=None)
+            for declarator in declaration.declarators
+            if declarator.name.text in used
+        ]
+        if declarators:
+            yield replace(declaration, declarators=tuple(declarators))
+
+
+def _names(declaration: s.Declaration) -> list[str]:
+    return [declarator.name.text for declarator in declaration.declarators]
+
+
+def _words(part: object) -> Iterator[str]:
+    """The names in a part of the syntax tree."""
+    if isinstance(part, s.Name):
+        yield part.text
+    elif isinstance(part, tuple) and not isinstance(part, Span):
+        for item in part:
+            yield from _words(item)
+    elif is_dataclass(part):
+        for field in fields(part):
+            yield from _words(getattr(part, field.name))
 
 
 def _without_break(statement: s.Statement) -> tuple[s.Statement, ...] | None:

@@ -41,6 +41,8 @@ class Macro(NamedTuple):
     body: tuple[Token, ...]
     pastes: bool = False
     """Whether there is a `##` in the body."""
+    fault: tuple[Span, str, str] | None = None
+    """What is wrong with its body, which is an error where the macro is used."""
 
     def same_as(self, other: Macro, spaced: bool = False) -> bool:
         """Whether both have the same definition, wherever it is written; `spaced`: with blanks at the same places."""
@@ -65,6 +67,7 @@ def builtin_macros(version: int, profile: str) -> dict[str, Macro]:
     profile = profile or ("core" if version == 0 or version >= 150 else "")
     values = {"__VERSION__": version or 450, "GL_FRAGMENT_PRECISION_HIGH": 1}
     values |= {"GL_ES": 1} if profile == "es" else {}
+    values |= {"GL_ANDROID_extension_pack_es31a": 1} if profile == "es" and version >= 310 else {}
     values |= {f"GL_{profile}_profile": 1} if profile else {}
     macros = {name: Macro(name, None, (Token("INT", str(value), NOWHERE),)) for name, value in values.items()}
     return {**macros, _LINE.name: _LINE, _FILE.name: _FILE}
@@ -201,6 +204,8 @@ class Expander:
                 if call is None:
                     continue
                 arguments, hidden = call[0], hidden & call[1]
+            if macro.fault is not None:
+                self.report(*macro.fault)
             hidden |= {name}
             if len(hidden) > MAX_NESTED or depth > MAX_NESTED:
                 raise TooMuch(token.span, f"macros nest more than {MAX_NESTED} levels deep")

@@ -19,7 +19,7 @@ from sssgen.lang.preprocess.directives import BLANK, Branch, SourceFile, directi
 from sssgen.lang.preprocess.if_conditions import Fault, evaluate
 from sssgen.lang.preprocess.macro_constants import MacroConstants
 from sssgen.lang.preprocess.macros import MAX_TOKENS, Expander, Numbering, TooMuch, builtin_macros, definition
-from sssgen.lang.syntax.lexer import KEYWORDS, Lexer
+from sssgen.lang.syntax.lexer import KEYWORDS, Lexer, Report
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean
 
@@ -207,8 +207,10 @@ class _Run:
         if len(self.tokens) > MAX_TOKENS:
             self.stop(tokens[-1].span, f"more than {MAX_TOKENS} tokens, with all included files")
 
-    def split(self, lexer: Lexer, text: str, label: str, line: int, column: int) -> list[Token]:
-        tokens, comments = lexer.scan(text, label, line, column, self.error)
+    def split(
+        self, lexer: Lexer, text: str, label: str, line: int, column: int, report: Report | None = None
+    ) -> list[Token]:
+        tokens, comments = lexer.scan(text, label, line, column, report or self.error)
         if comments:
             self.comments.setdefault(label, []).extend(comments)
         return tokens
@@ -244,7 +246,9 @@ class _Run:
         elif not file.live:
             return
         elif name == "define":
-            self.define(self.tokens_of(file, rest, place), place, keep=True)
+            faults: list[tuple[Span, str, str]] = []
+            tokens = self.tokens_of(file, rest, place, lambda *fault: faults.append(fault))
+            self.define(tokens, place, keep=True, fault=faults[0] if faults else None)
         elif name == "undef":
             macro = self.macro_name(self.tokens_of(file, rest, place), place, name)
             if macro is not None:
@@ -273,8 +277,8 @@ class _Run:
         elif name or plain(rest):
             self.error(place, f"there is no directive '#{name}'", did_you_mean(name, _KNOWN))
 
-    def tokens_of(self, file: SourceFile, rest: str, place: Span) -> list[Token]:
-        return self.split(self.directive_lexer, rest, file.label, place.end_line, place.end_column)
+    def tokens_of(self, file: SourceFile, rest: str, place: Span, report: Report | None = None) -> list[Token]:
+        return self.split(self.directive_lexer, rest, file.label, place.end_line, place.end_column, report)
 
     def macro_name(self, tokens: list[Token], place: Span, directive: str) -> Token | None:
         """The macro's name that must be the only argument of a directive."""
@@ -405,9 +409,10 @@ class _Run:
 
     # Macros
 
-    def define(self, tokens: list[Token], place: Span, keep: bool) -> None:
+    def define(self, tokens: list[Token], place: Span, keep: bool, fault: tuple[Span, str, str] | None = None) -> None:
+        """Defines a macro; `fault`: its body has text that is no token, which a macro may have that is not used."""
         try:
-            macro = definition(tokens, place)
+            macro = definition(tokens, place)._replace(fault=fault)
         except Fault as fault:
             self.error(*fault.details)
             return
@@ -422,7 +427,7 @@ class _Run:
         if keep:
             self.text_macros.add(macro.name)
         macros[macro.name] = macro
-        if keep and constants is not None and self.between_declarations():
+        if keep and constants is not None and fault is None and self.between_declarations():
             constants.add(macro, tokens[0], self.expander.constants, len(self.tokens))
 
     def undefine(self, name: str) -> None:

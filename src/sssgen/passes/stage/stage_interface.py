@@ -15,7 +15,7 @@ from typing import NamedTuple
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Unary, Variable
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.types import VOID, Array, Type, Vector, kind_of
+from sssgen.ir.types import VOID, Array, Type, Vector, kind_of, unnested
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.stage.varyings import Path, locations, output_of, parts, varyings
@@ -54,9 +54,9 @@ class Slot(NamedTuple):
     """False: the module does not have the variable; it is only an output of the vertex shader."""
 
 
-def interpolation(slot: Slot) -> str:
-    """How a value is interpolated between vertices: flat, noperspective, centroid or '': integers always are flat."""
-    return "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
+def interpolation(variable: Variable) -> str:
+    """How a variable is interpolated: flat, noperspective, centroid or ''; integers always are flat."""
+    return "flat" if kind_of(unnested(variable.type)[0]) in ("int", "uint") else variable.interpolation
 
 
 class Stage(NamedTuple):

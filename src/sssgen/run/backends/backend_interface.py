@@ -97,6 +97,14 @@ class Bound(NamedTuple):
     place: Place
 
 
+ATTRIBUTES = {
+    "position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10, 2), "uv2": (12, 2), "color": (14, 4),
+}  # fmt: skip
+"""A vertex's attributes: the first of its numbers, and how many."""
+VERTEX_SIZE = 18
+"""The numbers of a vertex."""
+
+
 class Drawing(NamedTuple):
     """One draw: a program, its resources, and the picture that it fills, four 32-bit components a pixel."""
 
@@ -104,7 +112,7 @@ class Drawing(NamedTuple):
     """Width and height."""
     fragment: Stage
     vertex: Stage | None = None
-    """None: one triangle that covers the picture. In WGSL both stages have the same text."""
+    """None: one triangle that covers the picture. In WGSL both stages may have the same text."""
     floats: bool = False
     """Whether the picture is of float32; else of uint32."""
     textures: Mapping[str, Bound] = {}
@@ -112,17 +120,12 @@ class Drawing(NamedTuple):
     values: Mapping[str, Array] = {}
     """Uniforms outside of blocks (GLSL): numbers by name, matrices column by column."""
     vertices: Array | None = None
-    """(count, `VERTEX_SIZE`) float32: position, normal, tangent with its handedness, uv, second uv, colour."""
+    """(count, numbers of a vertex) float32."""
     triangles: Array | None = None
     """(count, 3) uint32."""
-
-
-ATTRIBUTES = {
-    "position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10, 2), "uv2": (12, 2), "color": (14, 4),
-}  # fmt: skip
-"""A vertex's attributes: the first of its numbers, and how many."""
-VERTEX_SIZE = 18
-"""The numbers of a vertex."""
+    attributes: Mapping[str, tuple[int, int]] = ATTRIBUTES
+    """By the name in the text: the first of its numbers, and how many; in HLSL by semantic, in WGSL location after
+    location. Those of ATTRIBUTES are position, normal, tangent with its handedness, uv, second uv, colour."""
 
 
 def refusal(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:

@@ -6,11 +6,11 @@
 /** @typedef {{ at: number, size: number }} Piece */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */
 /** @typedef {<T extends { destroy(): void }>(resource: T) => T} Keep  Destroys it after the picture. */
-/** @typedef {{ group: number, binding: number, sampler: number, view: GPUTextureViewDimension, filter: GPUFilterMode, wrap: GPUAddressMode,
- *   compare: GPUCompareFunction | '', format: GPUTextureFormat, dimension: GPUTextureDimension, bytes_per_texel: number,
+/** @typedef {{ group: number, binding: number, sampler: number, view: GPUTextureViewDimension, filter: GPUFilterMode,
+ *   between: GPUMipmapFilterMode, wrap: GPUAddressMode, compare: GPUCompareFunction | '', format: GPUTextureFormat, dimension: GPUTextureDimension, bytes_per_texel: number,
  *   levels: { size: number[], data: Piece }[] }} Texture */
-/** @typedef {{ code: string, vertex: string, fragment: string, format: GPUTextureFormat, groups: GPUBindGroupLayoutEntry[][],
- *   attributes: GPUVertexAttribute[], vertexStride: number, width: number, height: number, vertices: Piece, triangles: Piece,
+/** @typedef {{ code: string, vertex_code: string, vertex: string, fragment: string, format: GPUTextureFormat, groups: GPUBindGroupLayoutEntry[][],
+ *   attributes: GPUVertexAttribute[], stride: number, width: number, height: number, vertices: Piece, triangles: Piece,
  *   blocks: { group: number, binding: number, data: Piece }[], textures: Texture[] }} Plan  As webgpu_plan.py describes it. */
 /** @typedef {{ pipeline: GPURenderPipeline, layouts: GPUBindGroupLayout[] }} Pipeline */
 
@@ -112,21 +112,22 @@ async function draw(plan, piece, keep) {
  * @param {Plan} plan
  * @returns {Promise<Pipeline | { messages: any[], pipeline?: undefined }>} */
 async function pipelineFor(plan) {
-  const { code, vertex, fragment, format, groups, attributes, vertexStride } = plan;
+  const { code, vertex_code, vertex, fragment, format, groups, attributes, stride } = plan;
   const drawn = plan.triangles.size > 0;
-  const key = JSON.stringify([code, vertex, fragment, format, drawn, groups]);
+  const key = JSON.stringify([code, vertex_code, vertex, fragment, format, drawn && attributes, groups]);
   let found = pipelines.get(key);
   if (!found) {
     const module = device.createShaderModule({ code });
-    const { messages } = await module.getCompilationInfo();
-    const errors = messages.filter(({ type }) => type === "error");
+    const vertexModule = vertex_code ? device.createShaderModule({ code: vertex_code }) : module;
+    const lists = await Promise.all([module, vertexModule].map(async (each) => (await each.getCompilationInfo()).messages));
+    const errors = lists.flat().filter(({ type }) => type === "error");
     if (errors.length) return { messages: errors.map((one) => [one.lineNum, one.linePos, one.message]) };
     const layouts = groups.map((entries) => device.createBindGroupLayout({ entries }));
     /** @type {GPUVertexBufferLayout[]} */
-    const buffers = drawn ? [{ arrayStride: vertexStride, stepMode: "vertex", attributes }] : [];
+    const buffers = drawn ? [{ arrayStride: stride, stepMode: "vertex", attributes }] : [];
     const pipeline = await device.createRenderPipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: layouts }),
-      vertex: { module, entryPoint: vertex, buffers },
+      vertex: { module: vertexModule, entryPoint: vertex, buffers },
       fragment: { module, entryPoint: fragment, targets: [{ format }] },
       primitive: { topology: "triangle-list", cullMode: "none" },
     });
@@ -148,12 +149,12 @@ function bindBlocks(plan, groups, piece, keep) {
 /** @param {Plan} plan @param {GPUBindGroupEntry[][]} groups @param {PieceOf} piece @param {Keep} keep */
 function bindTextures(plan, groups, piece, keep) {
   for (const texture of plan.textures) {
-    const { group, binding, sampler, view, filter, wrap, compare } = texture;
+    const { group, binding, sampler, view, filter, between, wrap, compare } = texture;
     groups[group].push({ binding, resource: keep(uploaded(texture, piece)).createView({ dimension: view }) });
     if (sampler < 0) continue;
     const wraps = { addressModeU: wrap, addressModeV: wrap, addressModeW: wrap };
     /** @type {GPUSamplerDescriptor} */
-    const filters = { magFilter: filter, minFilter: filter, mipmapFilter: "linear" };
+    const filters = { magFilter: filter, minFilter: filter, mipmapFilter: between };
     const compares = compare ? { compare } : {};
     groups[group].push({ binding: sampler, resource: device.createSampler({ ...wraps, ...filters, ...compares }) });
   }

@@ -19,7 +19,7 @@ from sssgen.run.backends.backend_interface import Array, Drawing, backend_failur
 from sssgen.run.backends.browser_page import START, WEBGPU, LostError, Page
 from sssgen.run.backends.call_program import FRAGMENT
 from sssgen.run.backends.draw_backend import DrawingBackend
-from sssgen.run.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
+from sssgen.run.backends.webgpu_plan import Plan, layout_entries, plan
 from sssgen.run.compilers import CompilerMissing, Message
 from sssgen.run.machine_parts import chromium, firefox
 
@@ -138,8 +138,7 @@ def _pack(drawing_plan: Plan) -> tuple[str, bytes]:
         "blocks": [block._asdict() for block in drawing_plan.blocks],
         "groups": _groups(drawing_plan),
     }
-    vertices = {"attributes": ATTRIBUTE_PLAN, "vertexStride": STRIDE}
-    return json.dumps(drawing_plan._asdict() | lists | vertices, default=piece), b"".join(pieces)
+    return json.dumps(drawing_plan._asdict() | lists, default=piece), b"".join(pieces)
 
 
 def _groups(drawing_plan: Plan) -> list[list[dict[str, Any]]]:

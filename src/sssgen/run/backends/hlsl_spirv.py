@@ -76,7 +76,8 @@ class HLSL(OpenGL):
 
     def attribute(self, program: Any, name: str) -> str:
         """DXC names vertex inputs after their semantics, glslang after the members of their struct."""
-        members = (member for member in program if member.endswith(_ENDINGS[name]) and not member.startswith("gl_"))
+        ending = _ENDINGS.get(name, name)
+        members = (member for member in program if member.endswith(ending) and not member.startswith("gl_"))
         return next((member for member in members if type(program[member]).__name__ == "Attribute"), "")
 
 

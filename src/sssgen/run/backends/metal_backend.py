@@ -117,10 +117,13 @@ def _run(library: Any, number: int, call: Call, lanes: int) -> Array:
 
 
 def _pad(type_: Type, value: Array, padded: int) -> Array:
-    """An argument for every lane of the grid and one more, 0 where there is none, as in a picture."""
+    """An argument for every lane of the grid and one more. Where there is none: 0 as in a picture; the last integer, as
+    a processor stops at a division by 0."""
     with np.errstate(over="ignore", invalid="ignore"):
         value = value.astype(DTYPES[kind_of(type_)]).reshape(*_inner(type_), -1)
     filled = np.zeros((*_inner(type_), padded + 1), value.dtype)
+    if kind_of(type_) in ("int", "uint"):
+        filled[...] = value[..., -1:]
     filled[..., : value.shape[-1] if value.shape[-1] > 1 else None] = value
     return filled
 

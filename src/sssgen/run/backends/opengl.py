@@ -14,7 +14,6 @@ import numpy as np
 
 from sssgen.run import compilers
 from sssgen.run.backends.backend_interface import (
-    ATTRIBUTES,
     Array,
     Block,
     Bound,
@@ -167,8 +166,10 @@ class OpenGL(DrawingBackend):
             return self.context.vertex_array(program, [])
         buffer = keep(self.context.buffer(np.ascontiguousarray(drawing.vertices, np.float32)))
         index = keep(self.context.buffer(np.ascontiguousarray(drawing.triangles, np.uint32)))
-        attributes = {name: self.attribute(program, name) for name in ATTRIBUTES}
-        layout = " ".join(f"{size}f" if attributes[name] else f"{4 * size}x" for name, (_, size) in ATTRIBUTES.items())
+        attributes = {name: self.attribute(program, name) for name in drawing.attributes}
+        layout = " ".join(
+            f"{size}f" if attributes[name] else f"{4 * size}x" for name, (_, size) in drawing.attributes.items()
+        )
         names = [name for name in attributes.values() if name]
         return self.context.vertex_array(program, [(buffer, layout, *names)], index)
 

@@ -11,7 +11,7 @@ import numpy as np
 from sssgen.run import compilers
 from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refusal
 from sssgen.run.backends.draw_backend import DrawingBackend
-from sssgen.run.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
+from sssgen.run.backends.webgpu_plan import Plan, TexturePlan, layout_entries, plan
 from sssgen.run.compilers import CompilerMissing
 from sssgen.run.compilers.naga import Naga, find
 
@@ -67,6 +67,8 @@ class WebGPU(DrawingBackend):
                 self.start(self.naga)
                 return None
             messages = self.naga.complaints(drawing_plan.code)
+            if not messages and drawing_plan.vertex_code:
+                messages = self.naga.complaints(drawing_plan.vertex_code)
             if messages:
                 raise refusal(self.name, drawing.fragment.text, messages) from None
             raise backend_failure(self.name, f"{type(error).__name__}: {error}") from error
@@ -114,10 +116,11 @@ class WebGPU(DrawingBackend):
         groups = layout_entries(drawing_plan)
         key = (
             drawing_plan.code,
+            drawing_plan.vertex_code,
             drawing_plan.vertex,
             drawing_plan.fragment,
             drawing_plan.format,
-            bool(drawing_plan.triangles),
+            repr(drawing_plan.attributes) if drawing_plan.triangles else "",
             repr(groups),
         )
         if key in self.pipelines:
@@ -126,13 +129,18 @@ class WebGPU(DrawingBackend):
             return cached
         gpu = self.gpu
         module = gpu.create_shader_module(code=drawing_plan.code)
+        vertex_code = drawing_plan.vertex_code
+        vertex_module = gpu.create_shader_module(code=vertex_code) if vertex_code else module
         layouts = [gpu.create_bind_group_layout(entries=groups.get(i, [])) for i in range(max(groups, default=-1) + 1)]
-        buffers = (
-            [{"array_stride": STRIDE, "step_mode": "vertex", "attributes": _SNAKE}] if drawing_plan.triangles else []
-        )
+        attributes = [
+            {"format": each["format"], "offset": each["offset"], "shader_location": each["shaderLocation"]}
+            for each in drawing_plan.attributes
+        ]
+        buffer = {"array_stride": drawing_plan.stride, "step_mode": "vertex", "attributes": attributes}
+        buffers = [buffer] if drawing_plan.triangles else []
         pipeline = gpu.create_render_pipeline(
             layout=gpu.create_pipeline_layout(bind_group_layouts=layouts),
-            vertex={"module": module, "entry_point": drawing_plan.vertex, "buffers": buffers},
+            vertex={"module": vertex_module, "entry_point": drawing_plan.vertex, "buffers": buffers},
             fragment={
                 "module": module,
                 "entry_point": drawing_plan.fragment,
@@ -158,7 +166,9 @@ class WebGPU(DrawingBackend):
             entries.append({"binding": texture.binding, "resource": view})
             if texture.sampler >= 0:
                 wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
-                filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
+                filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {
+                    "mipmap_filter": texture.between
+                }
                 sampler = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
                 entries.append({"binding": texture.sampler, "resource": sampler})
         return groups
@@ -174,10 +184,3 @@ class WebGPU(DrawingBackend):
             layout = {"bytes_per_row": level.size[0] * texture.bytes_per_texel, "rows_per_image": level.size[1]}
             self.gpu.queue.write_texture({"texture": created, "mip_level": number}, level.data, layout, level.size)
         return created
-
-
-_SNAKE = [
-    {"format": attribute["format"], "offset": attribute["offset"], "shader_location": attribute["shaderLocation"]}
-    for attribute in ATTRIBUTE_PLAN
-]
-"""The attributes in wgpu's spelling."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, Bound, Drawing
+from sssgen.run.backends.backend_interface import Array, Bound, Drawing
 from sssgen.targets.runtime.numpy_textures import Texture
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
@@ -32,6 +33,8 @@ class TexturePlan(NamedTuple):
     view: str
     """Of the view: 2d, 3d, cube, 2d-array or cube-array."""
     filter: str
+    between: str
+    """The filter between levels."""
     wrap: str
     levels: list[Level]
     compare: str = ""
@@ -60,24 +63,21 @@ class Plan(NamedTuple):
     vertices: bytes
     triangles: bytes
     """Indices as uint32; empty: three vertices without buffers."""
-
-
-STRIDE = 4 * VERTEX_SIZE
-"""Bytes of a vertex."""
-
-ATTRIBUTE_PLAN = [
-    {"format": f"float32x{size}", "offset": 4 * first, "shaderLocation": location}
-    for location, (first, size) in enumerate(ATTRIBUTES.values())
-]
-"""All attributes; a program may read fewer."""
+    vertex_code: str = ""
+    """The text of the vertex stage; '': `code` has both."""
+    attributes: Sequence[Mapping[str, Any]] = ()
+    """A program may read fewer."""
+    stride: int = 0
+    """Bytes of a vertex."""
 
 
 def plan(drawing: Drawing) -> Plan:
     """The plan of a drawing."""
     assert drawing.vertex is not None
     triangles = drawing.triangles
+    code, vertex_code = drawing.fragment.text.text, drawing.vertex.text.text
     return Plan(
-        drawing.fragment.text.text,
+        code,
         drawing.vertex.entry,
         drawing.fragment.entry,
         "rgba32float" if drawing.floats else "rgba32uint",
@@ -86,6 +86,12 @@ def plan(drawing: Drawing) -> Plan:
         [BlockPlan(block.place.group, block.place.binding, block.data) for block in drawing.blocks.values()],
         b"" if drawing.vertices is None else np.ascontiguousarray(drawing.vertices, np.float32).tobytes(),
         b"" if triangles is None else np.ascontiguousarray(triangles, np.uint32).tobytes(),
+        "" if vertex_code == code else vertex_code,
+        [
+            {"format": f"float32x{size}" if size > 1 else "float32", "offset": 4 * first, "shaderLocation": location}
+            for location, (first, size) in enumerate(drawing.attributes.values())
+        ],
+        4 * sum(size for _, size in drawing.attributes.values()),
     )
 
 
@@ -95,7 +101,9 @@ def texture_plan(bound: Bound) -> TexturePlan:
     if not isinstance(data, Texture):
         size = data.shape[1], data.shape[0], 1
         level = Level(size, np.ascontiguousarray(data, np.uint32).tobytes())
-        return TexturePlan(place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "repeat", [level])
+        return TexturePlan(
+            place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "nearest", "repeat", [level]
+        )
     format, bytes_per_texel = _FORMATS["depth" if data.compare else data.kind]
     levels = []
     for texels in data.levels:
@@ -103,10 +111,12 @@ def texture_plan(bound: Bound) -> TexturePlan:
         levels.append(Level(size, _bytes(texels, format)))
     dimension = "3d" if data.dim == "3D" else "2d"
     view = data.dim.lower() + ("-array" if data.layers else "")
+    between = "nearest" if data.kind in ("int", "uint") and not data.compare else "linear"
+    filter = data.filter if between == "linear" else between
     wrap, compare = _WRAP[data.wrap], "less-equal" if data.compare else ""
     return TexturePlan(
-        place.group, place.binding, place.sampler, format, bytes_per_texel, dimension, view, data.filter, wrap, levels,
-        compare,
+        place.group, place.binding, place.sampler, format, bytes_per_texel, dimension, view, filter, between, wrap,
+        levels, compare,
     )  # fmt: skip
 
 
@@ -135,6 +145,7 @@ def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
         resources = groups.setdefault(texture.group, [])
         resources.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
         if texture.sampler >= 0:
-            sampler = {"type": "comparison" if texture.compare else "filtering"}
+            filters = "filtering" if texture.between == "linear" else "non-filtering"
+            sampler = {"type": "comparison" if texture.compare else filters}
             resources.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
     return groups

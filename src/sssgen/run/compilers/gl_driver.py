@@ -35,8 +35,7 @@ class DriverGL(Compiler):
 
     def __init__(self, context: Any) -> None:
         self.context = context
-        code = context.version_code
-        self._version = f"OpenGL {code // 100}.{code // 10 % 10} on {context.info['GL_RENDERER']}"
+        self._version = f"OpenGL {context.info['GL_VERSION']} on {context.info['GL_RENDERER']}"
 
     def version(self) -> str:
         return self._version

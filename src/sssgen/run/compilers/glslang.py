@@ -54,6 +54,16 @@ class Glslang(Compiler):
             raise ValueError(f"{completed.stdout}{completed.stderr}")
         return module
 
+    def opengl_spirv(self, text: str, stage: str) -> bytes:
+        """The SPIR-V of GLSL for OpenGL. Raises ValueError with the compiler's log."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "out.spv"
+            options = ["-G", "-S", _STAGES[stage], "--auto-map-bindings", "--auto-map-locations", "-o", str(path)]
+            completed = self._run(text, options)
+            if completed.returncode:
+                raise ValueError(f"{completed.stdout}{completed.stderr}")
+            return path.read_bytes()
+
     def _hlsl(self, text: str, stage: str, entry: str, dx9_samplers: bool) -> tuple[CompletedProcess[str], bytes]:
         with tempfile.TemporaryDirectory() as folder:
             options = ["-D", "-V", "-S", _STAGES[stage], "-e", entry]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 from sssgen.run.compilers.calling_entry import wgsl_entry
@@ -53,9 +54,14 @@ def find() -> Naga:
         if str(adapter.info["backend_type"]).lower().startswith("opengl"):  # it lacks what WebGPU promises
             raise CompilerMissing("only OpenGL is available")
         features: Any = sorted({"shader-f16"} & set(adapter.features))
-        return Naga(adapter.request_device_sync(required_features=features), str(adapter.info["device"]))
+        return Naga(adapter.request_device_sync(required_features=features), _device_name(adapter.info))
     except Exception as error:
         raise CompilerMissing(f"a Vulkan driver (Debian: mesa-vulkan-drivers libvulkan1): {error}") from None
+
+
+def _device_name(info: Mapping[str, Any]) -> str:
+    """The device, the interface through which it is reached, and its driver: `llvmpipe …, Vulkan, Mesa 22.3.6 …`."""
+    return ", ".join([str(info[key]) for key in ("device", "backend_type", "description") if info.get(key)])
 
 
 def _message(log: str) -> Message:

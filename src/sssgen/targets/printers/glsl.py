@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of
-from sssgen.passes.stage.stage_interface import COLORS
+from sssgen.passes.stage.stage_interface import COLORS, interpolation
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, with_doc, wrap
 from sssgen.targets.printers.printer import PRIMARY, Printer
 from sssgen.targets.uniform_layout import Member
+
+_PASSED = (("vertex", "out"), ("fragment", "in"))
+"""What the vertex shader passes to the fragment shader, by stage and storage."""
 
 
 class GlslPrinter(Printer):
@@ -46,7 +49,8 @@ class GlslPrinter(Printer):
             return super().print_variable(variable)
         if variable.storage == "buffer":
             return self.with_comments(variable, self.buffer(variable))
-        word = variable.interpolation
+        passed = self.stage is not None and (self.stage.kind, variable.storage) in _PASSED
+        word = interpolation(variable) if passed else variable.interpolation
         words = [word] if word and (word != "noperspective" or self.target.capabilities.noperspective) else []
         text = " ".join([*words, variable.storage, self.variable(variable.type, variable.name)])
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])

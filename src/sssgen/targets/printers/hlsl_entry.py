@@ -46,7 +46,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         return f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
 
     def sampling(slot: Slot, semantics: str) -> str:
-        word = interpolation(slot)
+        word = interpolation(slot.variable)
         return _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
 
     def declaration(slot: Slot, name: str, semantics: str) -> str:

@@ -21,7 +21,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     def attributes(slot: Slot, varying: bool) -> str:
         if slot.location < 0:
             return f"@builtin({builtins[slot.variable.builtin]})"
-        word = interpolation(slot)
+        word = interpolation(slot.variable)
         sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
         return f"@location({slot.location}){sampled}"
 

@@ -205,7 +205,8 @@ class Texture:
         values = texels if self.kind != "float" else texels.astype(low[0].dtype)
         if read.reference is None:
             return values
-        return np.where(read.reference <= values[:1], 1.0, 0.0).astype(values.dtype)
+        reference = np.clip(read.reference, 0.0, 1.0)  # as depths of fixed point do
+        return np.where(reference <= values[:1], 1.0, 0.0).astype(values.dtype)
 
     def _wrap(self, level: int, places: list[Array], face: Array | None, layer: Array | None) -> Array:
         size = self.size(level)

@@ -105,7 +105,7 @@ class Record:
 
 
 def arrays(values: tuple[Value, ...]) -> list[Value]:
-    """The values as arrays; Python numbers take the type of the first array of their kind."""
+    """The values as arrays; Python numbers take the type of the first array of their kind, negative ones are ints."""
     floating: np.dtype[Any] = working()
     integer: np.dtype[Any] = np.dtype(np.int32)
     for value in reversed(values):
@@ -115,7 +115,9 @@ def arrays(values: tuple[Value, ...]) -> list[Value]:
             elif value.dtype.kind in "iu":
                 integer = value.dtype
     kinds = {float: floating, int: integer, bool: np.dtype(np.bool_)}
-    return [np.asarray(value, kinds.get(type(value))) for value in values]
+    return [
+        np.asarray(value, np.int32 if type(value) is int and value < 0 else kinds.get(type(value))) for value in values
+    ]
 
 
 def silent(function: Callable[..., Value]) -> Callable[..., Value]:

@@ -1,0 +1,76 @@
+"""Valid GLSL that few programs have, with its results on every back end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from results_of_glsl import check_results
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend
+from sssgen.support.diagnostics import SssgenError
+
+SWITCH = """float f(float x) {
+    float result = x;
+    switch (int(x)) {
+        case 0: float y = 10.0, z; const float W = 0.5; result += y; break;
+        case 1: y = 20.0; result += y + W;
+        case 2: int n = 4; break;
+        default: n = 5; z = float(n); result += z;
+    }
+    return result;
+}"""
+CASES = {
+    "a variable of an earlier case": (SWITCH, 1.0, 21.5),
+    "a variable of an earlier case in the last one": (SWITCH, 7.0, 12.0),
+    "the case with the value": (SWITCH, 0.0, 10.0),
+    "an out argument that is converted": (
+        "void give(float x, out uint n, out int m) { n = uint(x); m = -int(x); }"
+        "float f(float x) { float a; vec2 b; give(x, a, b.y); return a * 10.0 + b.y; }", 3.0, 27.0,
+    ),
+    "out arguments that are converted in the order of the call": (
+        "int give(out int n, int m) { n = m + 1; return m; }"
+        "float f(float x) { float a = x; return a * 100.0 + float(give(a, 4)) * 10.0 + a; }", 2.0, 245.0,
+    ),
+    "an overload with an out argument that is converted": (
+        "void give(out uint n) { n = 3u; } void give(out vec2 n) { n = vec2(1.0); }"
+        "float f(float x) { give(x); return x; }", 2.0, 3.0,
+    ),
+    "a macro with any text that is not used": ("#define NEVER \"$ @ ` \\ x\nfloat f(float x) { return x; }", 2.0, 2.0),
+    "an extension pack": (
+        "#version 310 es\nprecision highp float;\n"
+        "float f(float x) { return x + float(GL_ANDROID_extension_pack_es31a); }",
+        2.0, 3.0,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_results(case: str, backend: Callable[[str], Backend]) -> None:
+    text, x, expected = CASES[case]
+    check_results(text, expected, backend, [x])
+
+
+def test_a_macro_with_a_fault_that_is_used() -> None:
+    with pytest.raises(SssgenError, match="unknown character '@'"):
+        load_glsl_text("#define AT @ 1.0\nfloat f() { return AT; }\n", "case.glsl")
+
+
+def test_the_range_of_depths_is_a_uniform() -> None:
+    """WebGPU and D3D have it in the viewport alone."""
+    text = (
+        "out vec4 color;\nvoid main() { color = vec4(gl_DepthRange.near, gl_DepthRange.far, gl_DepthRange.diff, 1.0); }"
+    )
+    module = load_glsl_text(text, "case.frag").module
+    compiled = transpile(module, "wgsl", "case", keep=True)
+    uniforms = [(uniform["name"], uniform["default"]) for uniform in compiled.reflection["uniforms"]]
+    assert uniforms == [("DepthRange_near", [0.0]), ("DepthRange_far", [1.0]), ("DepthRange_diff", [1.0])]
+
+
+def test_a_compute_shader_without_the_size_of_its_workgroup() -> None:
+    text = "layout(std430) buffer Numbers { float x[]; };\nvoid main() { x[gl_GlobalInvocationID.x] = 1.0; }\n"
+    assert load_glsl_text(text, "case.comp").module.workgroup == (1, 1, 1)
+    with pytest.raises(SssgenError, match="belong to compute shaders"):
+        load_glsl_text(text, "case.glsl")
