@@ -71,11 +71,11 @@ _VALUES = (
     "build, or must fail."
 )
 _AMBER_ABOUT = (
-    "The GLSL is that of the comments in a file. Each program draws the picture of the file's size, with its "
-    "buffers and textures, and the colors of 8 bits have to be those that the file expects, or two pictures have "
-    "equal histograms, within its tolerance. NumPy computes nine blocks of 4 by 4 pixels, as does a back end that "
-    f"takes more than {SECONDS:g} seconds for the picture. Compute shaders leave the expected numbers in a buffer. "
-    "Files without GLSL are skipped."
+    "The GLSL is that of the comments in a file, or spirv-cross makes it of the SPIR-V. Each program draws the "
+    "picture of the file's size, with its buffers and textures, and the colors of 8 bits have to be those that "
+    "the file expects, or two pictures have equal histograms, within its tolerance. NumPy computes nine blocks of "
+    f"4 by 4 pixels, as does a back end that takes more than {SECONDS:g} seconds for the picture. Compute shaders "
+    "leave the expected numbers in a buffer. Where spirv-cross is missing, files without GLSL are skipped."
 )
 _WEBGL_ABOUT = (
     "Pages of `GLSLConformanceTester` list programs: what they render has to be of one color; others build, or "
