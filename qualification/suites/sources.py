@@ -87,7 +87,8 @@ _SAMPLES_ABOUT = (
     "Each sample draws a quarter of its picture with the values of its JSON file. A translation is right where at "
     "most 2 % of the pixels are more than 1 of 255 apart from what the driver makes of the author's text, or else "
     "where all pixels agree, of nine blocks, that depend neither on rounding nor on what GLSL leaves undefined, "
-    "as the interpreter of `--verify` finds. Compute shaders leave the same buffers."
+    "as the interpreter of `--verify` finds. Where WGSL and NumPy are both against the driver, NumPy decides. "
+    "Compute shaders leave the same buffers."
 )
 _DEQP = "qualification.suites.deqp_runs:run_cases"
 _TEXTS = "qualification.suites.text_cases:run_cases"
