@@ -1,4 +1,4 @@
-"""Loops that nothing leaves compile in every language; they are not executed."""
+"""Loops that nothing leaves, and what exceeds the limits of compilers, compile in every language; not executed."""
 
 from __future__ import annotations
 
@@ -31,8 +31,20 @@ void main() {
 """
 
 
+LARGE = """#version 310 es
+precision highp float;
+out vec4 color;
+uniform Block { vec4 first; } INSTANCE;
+void main() {
+    mat3 unused[3][101][88];
+    color = INSTANCE.first * float(unused[0].length());
+}
+""".replace("INSTANCE", "a" * 1024)
+
+
 @pytest.mark.parametrize("target", TARGETS)
-def test_a_loop_without_an_exit_compiles(target: str) -> None:
-    module = load_glsl_text(ENDLESS, "endless.frag").module
-    text = next(iter(transpile(module, target, "endless", keep=True).files.values()))
+@pytest.mark.parametrize("source", [ENDLESS, LARGE], ids=["endless", "large"])
+def test_the_text_compiles(source: str, target: str) -> None:
+    module = load_glsl_text(source, "limits.frag").module
+    text = next(iter(transpile(module, target, "limits", keep=True).files.values()))
     assert compile_errors(text, target) == [], text

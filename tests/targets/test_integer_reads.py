@@ -1,4 +1,4 @@
-"""Reads of integer textures at coordinates: GLSL's own, or fetches. The tests of parity compare the values."""
+"""Reads and gathers of integer textures: GLSL's own, or others. The tests of parity compare the values."""
 
 from __future__ import annotations
 
@@ -6,15 +6,18 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.ir.intrinsics.integer_reads import READS, integer_reads
+from sssgen.ir.intrinsics.integer_reads import GATHERS, READS, integer_gathers, integer_reads
 from sssgen.ir.signatures import parse
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
-SIGNATURES = [(name, signature) for name in READS for signature in integer_reads(name).signatures]
-VALUES = {"float": "0.5", "ivec2": "ivec2(1, -2)", "ivec3": "ivec3(1, -2, 0)"}
+SIGNATURES = [
+    *((name, signature) for name in READS for signature in integer_reads(name).signatures),
+    *((name, signature) for name in GATHERS for signature in integer_gathers(name).signatures),
+]
+VALUES = {"float": "0.5", "int": "2", "ivec2": "ivec2(1, -2)", "ivec3": "ivec3(1, -2, 0)"}
 """What an argument is, where it is no parameter; offsets are constants."""
 
 
@@ -33,16 +36,17 @@ def text_of(target: str, source: str) -> str:
 
 @pytest.mark.parametrize("target", ["wgsl", "hlsl", "metal", "glsl-330", "glsl-es-300"])
 def test_every_read_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
-    """All but those of cubes, which WGSL, HLSL and Metal refuse with their name."""
-    has_cubes = target.startswith("glsl")
+    """All but those of cubes that need a gather, in languages without one: these are refused."""
+    gathers = target in ("wgsl", "hlsl")
     functions = []
     for number, (name, signature) in enumerate(SIGNATURES):
         source = function(number, name, signature)
-        if has_cubes or "samplerCube" not in signature:
+        is_refused = "samplerCube" in signature and not gathers and (name in GATHERS or target == "metal")
+        if not is_refused:
             functions.append(source)
-        else:
-            with pytest.raises(SssgenError, match=f"no {name} "):
-                text_of(target, source)
+            continue
+        with pytest.raises(SssgenError, match=f"no {name} " if name in GATHERS else "no texture"):
+            text_of(target, source)
     text = text_of(target, "".join(functions))
     assert_compiles(Source(text, target, "library", name="reads"))
-    assert len(functions) == (56 if has_cubes else 48)
+    assert len(functions) == {"metal": 72}.get(target, 84 if gathers else 80)

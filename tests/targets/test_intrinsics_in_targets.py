@@ -9,7 +9,7 @@ import pytest
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.intrinsics.integer_reads import READS, integer_reads
+from sssgen.ir.intrinsics.integer_reads import GATHERS, READS, integer_gathers, integer_reads
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
 from sssgen.pipeline.compiler import transpile
@@ -18,6 +18,7 @@ from texts_of_builtins import ALL
 from validate import TARGETS, module_of, printed, validate_all
 
 INTEGER_READS = {name: integer_reads(name).signatures for name in READS}
+INTEGER_READS |= {name: integer_gathers(name).signatures for name in GATHERS}
 
 
 @pytest.mark.parametrize("source", ALL)

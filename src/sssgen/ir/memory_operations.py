@@ -86,6 +86,10 @@ ROWS = (
     _barrier(
         "memoryBarrierBuffer", "Orders storage buffers.", "DeviceMemoryBarrier()", "storageBarrier()", ("buffer",),
     ),
+    _barrier(
+        "memoryBarrierImage", "Orders images, which are not translated.", "DeviceMemoryBarrier()", "storageBarrier()",
+        ("buffer",),
+    ),
     _barrier("memoryBarrier", "Orders all memory.", "AllMemoryBarrier()", "storageBarrier()", ("shared", "buffer")),
     _barrier(
         "groupMemoryBarrier", "Orders all memory for the workgroup.", "AllMemoryBarrier()", "storageBarrier()",

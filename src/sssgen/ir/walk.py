@@ -77,7 +77,8 @@ def written_places(stmt: ir.Stmt) -> tuple[ir.Expr, ...]:
     if type(stmt) is ir.Assign:
         return (stmt.target,)
     if isinstance(stmt, ir.MemoryOperation):
-        return (*stmt.args[:1], stmt.result) if stmt.result is not None else stmt.args[:1]
+        places = stmt.args[: stmt.name != "arrayLength"]  # which reads
+        return (*places, stmt.result) if stmt.result is not None else places
     return ()
 
 

@@ -17,6 +17,7 @@ from sssgen.lang.preprocess.preprocessor import PreprocessedText, preprocess
 from sssgen.lang.source_lines import keep_lines
 from sssgen.lang.syntax.doc_comments import words_of
 from sssgen.lang.syntax.parser import parse_tokens
+from sssgen.lang.syntax.separate_textures import join_textures
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.lang.version_rules import check_version
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
@@ -108,7 +109,7 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     check_version(source.tokens, source.version, source.profile, reporter)
     head, rest, is_generated = _head(source, label)
     comments = source.comments | {label: rest} if is_generated else source.comments
-    file = parse_tokens(tokens, comments, reporter, plain=True)
+    file = join_textures(parse_tokens(tokens, comments, reporter, plain=True), reporter)
     if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
         head = []  # it documents a declaration
     es = source.version if source.profile == "es" else 0

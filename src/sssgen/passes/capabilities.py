@@ -43,6 +43,8 @@ class Capabilities(NamedTuple):
     """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
     lane_control_flow: bool = False
     """Each lane branches for itself; if not, control flow becomes masks."""
+    large_variables: bool = False
+    """A variable of a function may have any size; if not, one of more than 8192 bytes that nothing uses is omitted."""
     layout_overloads: bool = False
     """Overloads may differ in a vec4 and a mat2 alone, or in structs that hold the same numbers."""
     loop_heads: bool = False
@@ -86,6 +88,8 @@ class Capabilities(NamedTuple):
     """Atomics work on any int or uint in memory; if not, their memory has a type of its own, which is not copied."""
     pointers: bool = False
     """Pointers stand for `out_parameters`; without both a function returns a struct of its results."""
+    storage_buffers: bool = False
+    """There are storage buffers."""
     std140_buffers: bool = False
     """A storage buffer may have the layout std140 where that is not std430."""
     struct_choices: bool = False
@@ -108,6 +112,8 @@ class Capabilities(NamedTuple):
     """A uniform's declaration may give it a value."""
     unreachable_statements: bool = False
     """Statements may follow a `return`, `break` or `continue` in its block; if not, they are omitted."""
+    vertex_buffer_writes: bool = False
+    """A vertex shader may write storage buffers."""
     variable_values: bool = False
     """A module variable may be initialised with an expression that is not constant."""
     varying_locations: bool = False

@@ -25,6 +25,9 @@ from sssgen.passes.scopes import Renamer, declared, rename_locals
 from sssgen.passes.struct_types import Retyper
 from sssgen.support.diagnostics import failure
 
+LONGEST = 1000
+"""The most letters of a name: GLSL allows 1,024 (GLSL ES 3.20, section 3.8), and compilers add some of their own."""
+
 
 class Rules(NamedTuple):
     """Which names a target has."""
@@ -117,12 +120,13 @@ class _Namer:
                 or name == "_"
                 or name.startswith("gl_")
                 or name.lower() in self.rules.reserved_folded
+                or len(name) > LONGEST
             )
         return cached
 
     def choose(self, name: str, taken: Container[str]) -> str:
         """A legal name that is like `name` and is not taken."""
-        base = re.sub(r"__+", "_", name.removeprefix("gl_"))
+        base = re.sub(r"__+", "_", name.removeprefix("gl_"))[: LONGEST - 8]
         if not base.strip("_") or base[0].isdigit():  # of `gl_2`, the name of a second `gl`
             base = f"value_{base}".rstrip("_")
         if self.free(base, taken):

@@ -22,6 +22,7 @@ from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import LinkError
 from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.stage.stage_interface import colors_in_use, entry_of, turned_derivatives
+from sssgen.passes.stage.storage_layout import has_buffers
 from sssgen.passes.stage.vertex_reads import with_levels
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.passes.unsupported import Unsupported
@@ -57,6 +58,10 @@ def _target(text: str, holds: Callable[[Capabilities], bool]) -> Condition:
 
 _SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
 _COMPUTE = Condition("it is a compute shader", lambda state: bool(state.module.workgroup))
+_MEMORY = Condition(
+    "it is a compute shader or has storage buffers",
+    lambda state: bool(state.module.workgroup) or has_buffers(state.module),
+)
 _NO_MAIN = Condition(
     "there are module variables and no main()",
     lambda state: bool(state.module.variables) and entry_of(state.module) is None,
@@ -184,7 +189,7 @@ TARGET: tuple[Pass, ...] = (
         "memory",
         steps.check_shared_memory,
         "refuse storage buffers with another layout, and copies of atomics",
-        _COMPUTE,
+        _MEMORY,
     ),
     Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _COMPUTE),
     Pass(

@@ -22,6 +22,7 @@ from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
 from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.stage_interface import entry_of, stage_kind
+from sssgen.passes.stage.storage_layout import has_buffers
 from sssgen.passes.unsupported import Note
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.material_stages import check_shell, check_values
@@ -68,7 +69,9 @@ def make_library(
         check_partner(kind, stage_kind(partner))
     form = kind if kind in target.files else "functions"
     if module.workgroup:
-        _check_compute(target, form, guards)
+        _check_compute(target, form)
+    if (module.workgroup or has_buffers(module)) and guards != "none":
+        raise failure("a shader with memory takes no guards: other invocations write it, too", "write --guards none")
     state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
@@ -76,15 +79,11 @@ def make_library(
     return target_program(state, trace)
 
 
-def _check_compute(target: Target, form: str, guards: str) -> None:
-    """Raises SssgenError where a target has no compute shaders, and for guards, which know one invocation alone."""
+def _check_compute(target: Target, form: str) -> None:
+    """Raises SssgenError where a target has no compute shaders."""
     if form != "compute":
         able = [name for name in registry.names() if "compute" in registry.load(name).files]
         raise failure(f"{target.title} has no compute shaders here", f"they go to {', '.join(able)}")
-    if guards != "none":
-        raise failure(
-            "a compute shader takes no guards: other invocations write its memory, too", "write --guards none"
-        )
 
 
 def check_partner(kind: str, other: str) -> None:

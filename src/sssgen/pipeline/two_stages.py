@@ -67,6 +67,13 @@ def transpile_stages(
     if any(kind not in chosen.files for kind in sources):
         able = [name for name in registry.names() if "vertex" in registry.load(name).files]
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
+    for source in sources.values():
+        if buffer := next((each for each in source.module.variables if each.storage == "buffer"), None):
+            raise failure(
+                f"'{buffer.name}' is a storage buffer: stages that have these are translated one by one",
+                "sssgen transpile FILE --with OTHER",
+                source.module.functions[-1].span.file,
+            )
     with pause_gc():
         blocks = {kind: block_members(source.module) for kind, source in sources.items()}
         modules = {kind: drop_unused(keep_reachable(source.module, [ENTRY]), True) for kind, source in sources.items()}

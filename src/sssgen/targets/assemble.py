@@ -364,6 +364,7 @@ def _context(
         "library": [function.name for function in program.module.functions],
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,
+        "storage_buffers": bool(printer.buffers),
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 

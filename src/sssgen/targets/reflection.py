@@ -9,7 +9,7 @@ from sssgen.ir.frame_passes import FRAME_PASSES, passes_of
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Slot
-from sssgen.passes.stage.storage_layout import extent, offsets
+from sssgen.passes.stage.storage_layout import extent, has_buffers, offsets
 from sssgen.passes.stage.uniform_structs import members
 from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, needed, printer_for
@@ -170,9 +170,10 @@ def _slots(slots: Sequence[Slot]) -> list[SlotRecord]:
 
 
 def _compute(target: Target, program: Program) -> Kernel:
-    """The workgroup of a compute shader, and its storage buffers with the layout of their members."""
+    """The workgroup of a compute shader, and storage buffers with the layout of their members."""
     module = program.module
-    if not module.workgroup:
+    size: Kernel = {"workgroup_size": list(module.workgroup)} if module.workgroup else {}
+    if not module.workgroup and not has_buffers(module):
         return {}
     printer = printer_for(target, module)
     buffers: list[BufferRecord] = []
@@ -193,7 +194,7 @@ def _compute(target: Target, program: Program) -> Kernel:
                 "least_size": extent(variable.type, variable.layout).size, "members": members,
             }
         )  # fmt: skip
-    return {"workgroup_size": list(module.workgroup), "storage_buffers": buffers}
+    return {**size, "storage_buffers": buffers}
 
 
 def _conventions(target: Target) -> dict[str, str | list[float]]:

@@ -163,7 +163,7 @@ class BufferMember(TypedDict):
 
 
 class BufferRecord(TypedDict):
-    """A storage buffer of a compute shader."""
+    """A storage buffer."""
 
     name: str
     block: str
@@ -244,10 +244,10 @@ class StageInterface(TypedDict, total=False):
 
 
 class Kernel(TypedDict, total=False):
-    """What only a compute shader has."""
+    """What only compute shaders and shaders with storage buffers have."""
 
     workgroup_size: list[int]
-    """Three numbers of invocations."""
+    """Three numbers of invocations, of a compute shader."""
     storage_buffers: list[BufferRecord]
 
 

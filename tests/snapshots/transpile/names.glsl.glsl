@@ -36,9 +36,9 @@ float lambda(float def, float None, float and) {
     return f32 * and;
 }
 
-float members(float3x3 register) {
-    register.float3 += 1.0;
-    return register.float3 + register.half4.y;
+float members(float3x3 register_) {
+    register_.float3 += 1.0;
+    return register_.float3 + register_.half4.y;
 }
 
 float main_(float abs_, float max_1) {

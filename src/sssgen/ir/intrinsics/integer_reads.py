@@ -1,8 +1,8 @@
 """Reads of integer textures at coordinates, which GLSL has and WGSL, HLSL and TSL lack: fetches of the nearest texel.
 
 The level is 0, which OpenGL reads, too, where the filter is `NEAREST`: other levels are read by `texelFetch`. Outside of
-the texture its texels repeat, as those of OpenGL do unless its sampler has another mode. A cube has no fetch, so that
-only GLSL reads cubes of integers.
+the texture its texels repeat, as those of OpenGL do unless its sampler has another mode. A cube has no fetch: of the four
+texels that a gather gives, the nearest one is chosen. Where a language has no gathers, they are four fetches.
 """
 
 from __future__ import annotations
@@ -43,6 +43,10 @@ READS = {
 """Builtin → the parameters behind the coordinate, for each of its forms."""
 
 
+GATHERS = ("textureGather", "textureGatherOffset", "textureGatherLayer", "textureGatherLayerOffset")
+"""The builtins that gather, of which those of layers are the project's own."""
+
+
 class IntegerReads(NamedTuple):
     """What a row of the intrinsic table has of them."""
 
@@ -66,9 +70,92 @@ def integer_reads(name: str) -> IntegerReads:
                 types = [parameter.split()[0] for parameter in parameters]
                 signatures.append(f"{kind}vec4({', '.join(types)})")
                 texts |= {f"{language}/{','.join(types)}": "" for language in LANGUAGES}
-                if texture.offset:
-                    polyfills.append(_polyfill(name, kind, parameters, texture))
+                polyfill = _polyfill if texture.offset else _polyfill_of_cube
+                polyfills.append(polyfill(name, kind, parameters, texture))
     return IntegerReads(tuple(signatures), texts, "".join(polyfills))
+
+
+def integer_gathers(name: str) -> IntegerReads:
+    """The gathers of integer textures by the builtin `name`."""
+    signatures: list[str] = []
+    texts: dict[str, str] = {}
+    polyfills: list[str] = []
+    layered = "Layer" in name
+    for kind in KINDS:
+        for texture in _TEXTURES:
+            is_array = texture.sampler == "sampler2DArray"
+            if (
+                texture.sampler == "sampler3D"
+                or (layered and not is_array)
+                or ("Offset" in name and not texture.offset)
+            ):
+                continue
+            place = ["vec2 P", "int layer"] if layered else [f"{texture.place} P"]
+            offset = ["ivec2 offset"] if "Offset" in name else []
+            for channel in ([], ["int channel"]):
+                parameters = [f"{kind}{texture.sampler} map", *place, *offset, *channel]
+                types = [parameter.split()[0] for parameter in parameters]
+                signatures.append(f"{kind}vec4({', '.join(types)})")
+                texts |= _gather_texts(types, layered, bool(offset), bool(channel))
+                if texture.offset:
+                    body = _gather_polyfill(name, kind, is_array, bool(channel))
+                    polyfills.append(f"{kind}vec4 {name}({', '.join(parameters)}) {{{body}}}\n")
+    return IntegerReads(tuple(signatures), texts, "".join(polyfills))
+
+
+def _gather_texts(types: list[str], layered: bool, offset: bool, channel: bool) -> dict[str, str]:
+    """The texts of a gather in WGSL and HLSL; the others have none."""
+    key, at = ",".join(types), len(types) - 1
+    given = [f"{{{index}}}" for index in range(1, at if channel else at + 1)]
+    number = f"{{{at}}}" if channel else "0"
+    texts = {f"wgsl/{key}": f"textureGather({number}, {{texture}}, {{sampler}}, {', '.join(given)})"}
+    if "Array" in types[0] and not layered:
+        texts[f"wgsl/{key}"] = ""  # by its layer
+    if layered:
+        more = ", {3}" if offset else ""
+        color = "{channel}" if channel else "Red"
+        texts[f"hlsl/{key}"] = f"{{texture}}.Gather{color}({{sampler}}, float3({{1}}, float({{2}})){more})"
+    return texts
+
+
+def _gather_polyfill(name: str, kind: str, is_array: bool, channel: bool) -> str:
+    """The body of a gather by other gathers, or by four fetches."""
+    last = ", channel" if channel else ""
+    if name == "textureGather" and not is_array:
+        return f" return textureGatherOffset(map, P, ivec2(0){last}); "
+    if name == "textureGatherLayer":
+        return f" return textureGatherLayerOffset(map, P, layer, ivec2(0){last}); "
+    if is_array and "Layer" not in name:
+        offset = ", offset" if "Offset" in name else ""
+        return f" return {name.replace('Gather', 'GatherLayer')}(map, P.xy, int(round(P.z)){offset}{last}); "
+    size = "textureSize(map, 0).xy" if is_array else "textureSize(map, 0)"
+    read = "texelFetchLayer(map, {}, layer, 0)" if is_array else "texelFetch(map, {}, 0)"
+    corners = ("ivec2(low.x, high.y)", "high", "ivec2(high.x, low.y)", "low")
+    chosen = "[channel]" if channel else ".x"
+    texels = ", ".join(f"{read.format(corner)}{chosen}" for corner in corners)
+    return f"""
+    ivec2 size = {size};
+    ivec2 low = ivec2(floor(P * vec2(size) - 0.5)) + offset;
+    ivec2 high = low + 1;
+    low = low - size * ivec2(floor(vec2(low) / vec2(size)));
+    high = high - size * ivec2(floor(vec2(high) / vec2(size)));
+    return {kind}vec4({texels});
+"""
+
+
+def _polyfill_of_cube(name: str, kind: str, parameters: list[str], texture: _Texture) -> str:
+    """The nearest of the four texels that a gather gives. GLSL 4.60, section 8.13 of OpenGL 4.6, has the faces."""
+    texels = ", ".join(f"textureGather(map, P, {channel})[nearest]" for channel in range(4))
+    return f"""{kind}vec4 {name}({", ".join(parameters)}) {{
+    vec3 far = abs(P);
+    vec2 face = vec2(P.z < 0.0 ? -P.x : P.x, -P.y) / far.z;
+    if (far.y > far.z) {{ face = vec2(P.x, P.y < 0.0 ? -P.z : P.z) / far.y; }}
+    if (far.x > far.y && far.x > far.z) {{ face = vec2(P.x < 0.0 ? P.z : -P.z, -P.y) / far.x; }}
+    vec2 within = fract((face * 0.5 + 0.5) * vec2(textureSize(map, 0)) - 0.5);
+    int nearest = within.y >= 0.5 ? (within.x >= 0.5 ? 1 : 0) : within.x >= 0.5 ? 2 : 3;
+    return {kind}vec4({texels});
+}}
+"""
 
 
 def _polyfill(name: str, kind: str, parameters: list[str], texture: _Texture) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sssgen.ir.intrinsics.integer_reads import integer_gathers
 from sssgen.ir.intrinsics.table import Builtin, Level
 from sssgen.ir.intrinsics.textures import BY_READS, EIGHT_BITS, channel_at, gather_polyfill, offset_at, params
 from sssgen.ir.vector_ranges import all_within, texels
@@ -187,11 +188,12 @@ ROWS = (
     Builtin("textureGatherLayer",
         (
             *(f"{read}{channel})" for read in _OWN_LAYER for channel in ("", ", int")),
-            "vec4(sampler2DArrayShadow, vec2, int, float)",
+            "vec4(sampler2DArrayShadow, vec2, int, float)", *integer_gathers("textureGatherLayer").signatures,
         ),
         "As textureGather, of layer z; the channel or the reference is w.",
         componentwise=False, range=texels, constant=(channel_at(3),),
         texts={
+            **integer_gathers("textureGatherLayer").texts,
             "tsl": "",
             "wgsl-metal": "",
             "glsl": "",
@@ -208,17 +210,19 @@ ROWS = (
 vec4 textureGatherLayer(sampler2DArray map, vec2 P, int layer) { return textureGatherLayerOffset(map, P, layer, ivec2(0)); }
 vec4 textureGatherLayer(sampler2DArray map, vec2 P, int layer, int channel) { return textureGatherLayerOffset(map, P, layer, ivec2(0), channel); }
 vec4 textureGatherLayer(sampler2DArrayShadow map, vec2 P, int layer, float reference) { return textureGatherLayerOffset(map, P, layer, reference, ivec2(0)); }
-""",
+""" + integer_gathers("textureGatherLayer").polyfill,
         splat=(), kind="fetch", ulp=0.0,
     ),
     Builtin("textureGatherLayerOffset",
         (
             "vec4(sampler2DArray, vec2, int, ivec2)", "vec4(sampler2DArray, vec2, int, ivec2, int)",
             "vec4(sampler2DArrayShadow, vec2, int, float, ivec2)",
+            *integer_gathers("textureGatherLayerOffset").signatures,
         ),
         "As textureGatherOffset, of layer z.",
         componentwise=False, range=texels, constant=(offset_at(3), offset_at(4), channel_at(4)),
         texts={
+            **integer_gathers("textureGatherLayerOffset").texts,
             "tsl": "",
             "wgsl-metal": "",
             "glsl": "",
@@ -237,7 +241,7 @@ vec4 textureGatherLayer(sampler2DArrayShadow map, vec2 P, int layer, float refer
                 "sampler2DArrayShadow map, vec2 P, int layer, float reference", "textureSize(map, 0).xy",
                 "textureCompareLod(map, {}, layer, reference)",
             ),
-        )),
+        )) + integer_gathers("textureGatherLayerOffset").polyfill,
         splat=(), kind="fetch", absolute=2.0**-12, clause=BY_READS,
     ),
 )

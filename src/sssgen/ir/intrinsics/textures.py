@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from sssgen.ir import vector_ranges
-from sssgen.ir.intrinsics.integer_reads import integer_reads
+from sssgen.ir.intrinsics.integer_reads import integer_gathers, integer_reads
 from sssgen.ir.intrinsics.table import Builtin, ConstantArgument, Level, Samples
 from sssgen.ir.vector_ranges import all_within, any_numbers, texels
 
@@ -397,12 +397,13 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
     Builtin("textureGather",
         (
             *(f"vec4({read}{channel})" for read in _GATHERED for channel in ("", ", int")),
-            *(f"vec4({read})" for read in _GATHERED_SHADOWS),
+            *(f"vec4({read})" for read in _GATHERED_SHADOWS), *integer_gathers("textureGather").signatures,
         ),
         "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
         "from the lower left one. Of a texture that compares: 1 where the texel is not below the reference z, else 0.",
         es=310, componentwise=False, range=texels, constant=(channel_at(2),),
         texts={
+            **integer_gathers("textureGather").texts,
             "wgsl-metal": "",
             "glsl": "", "tsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
@@ -424,18 +425,20 @@ vec4 textureGather(samplerCubeArray map, vec4 P) { return textureGatherLayer(map
 vec4 textureGather(samplerCubeArray map, vec4 P, int channel) { return textureGatherLayer(map, P.xyz, int(round(P.w)), channel); }
 vec4 textureGather(sampler2DShadow map, vec2 P, float reference) { return textureGatherOffset(map, P, reference, ivec2(0)); }
 vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return textureGatherLayer(map, P.xy, int(round(P.z)), reference); }
-""",
+""" + integer_gathers("textureGather").polyfill,
         splat=(), kind="fetch", ulp=0.0,
     ),
     Builtin("textureGatherOffset",
         (
             *(f"vec4({read}, ivec2{channel})" for read in ("sampler2D, vec2", "sampler2DArray, vec3") for channel in ("", ", int")),
             "vec4(sampler2DShadow, vec2, float, ivec2)", "vec4(sampler2DArrayShadow, vec3, float, ivec2)",
+            *integer_gathers("textureGatherOffset").signatures,
         ),
         "As textureGather, with an offset added to the places in texels: z, before the channel; after the reference of a "
         "texture that compares.",
         es=310, componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
         texts={
+            **integer_gathers("textureGatherOffset").texts,
             "wgsl-metal": "",
             "glsl": "", "tsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
@@ -457,7 +460,7 @@ vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return t
             " { return textureGatherLayerOffset(map, P.xy, int(round(P.z)), offset, channel); }\n",
             "(sampler2DArrayShadow map, vec3 P, float reference, ivec2 offset)"
             " { return textureGatherLayerOffset(map, P.xy, int(round(P.z)), reference, offset); }\n",
-        )),
+        )) + integer_gathers("textureGatherOffset").polyfill,
         splat=(), kind="fetch", absolute=2.0**-12, clause=BY_READS,
     ),
 )

@@ -30,6 +30,11 @@ BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
 }
 """The variables that have a counterpart in other languages: type, and whether a stage reads or writes them."""
 
+INVOCATION = {
+    name for name in BUILTIN_VARIABLES if name.startswith(("gl_Global", "gl_Local", "gl_WorkGroup", "gl_Num"))
+}
+"""Those that compute shaders alone have."""
+
 DRAW_UNIFORMS: dict[str, Type] = {
     "gl_ViewID_OVR": UINT, "gl_DrawID": INT, "gl_BaseVertex": INT, "gl_BaseInstance": INT,
 }  # fmt: skip

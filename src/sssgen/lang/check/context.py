@@ -110,8 +110,8 @@ class CheckContext:
         """The sizes of a compute shader's workgroup."""
         self.buffer_members: dict[str, ir.Member] = {}
         """The members of storage buffers without an instance name."""
-        self.memory_operations: list[ir.Span] = []
-        """The places of atomics and barriers."""
+        self.barriers: list[ir.Span] = []
+        """The places of barriers, which compute shaders alone have."""
         self.derivatives: list[ir.Span] = []
         """The places of derivatives along the screen."""
         self.draw_uniforms: list[ir.Uniform] = []

@@ -39,6 +39,7 @@ class GlobalChecker:
         count = len(self.uniforms)
         for member in members:
             self.global_(member, block.name.text)
+        self.interface.place_members(block, members)
         self.interface.name_instance(block, members)
         self.uniforms[count:] = self.interface.uniforms_of(block, members, self.uniforms[count:])
 

@@ -8,6 +8,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.memory_operations import MEMORY, MemoryRow
 from sssgen.ir.types import INT, UINT, VOID, Array, Field, Matrix, Sampler, Struct, Type, unnested
 from sssgen.ir.walk import subexpressions, written_root
+from sssgen.lang.check.builtin_variables import INVOCATION
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
@@ -33,12 +34,13 @@ class MemoryChecker:
         """`layout(local_size_x = 8, local_size_y = 8) in;`, and the order in which uniform blocks store matrices."""
         sizes = {name: value for name, value in layout.qualifiers.layout if name in _SIZES and value is not None}
         context = self.context
+        specialized = any(name.removesuffix("_id") in _SIZES for name, _ in layout.qualifiers.layout)
         if "uniform" in layout.qualifiers.keywords:
             if any(name == "std430" for name, _ in layout.qualifiers.layout):
                 message = "std430 is a layout of storage buffers, not of uniform blocks"
                 raise context.fail(layout.qualifiers.span, message, "write std140")
             context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
-        if not sizes or "in" not in layout.qualifiers.keywords:
+        if not (sizes or specialized) or "in" not in layout.qualifiers.keywords:
             return
         context.workgroup = (1, 1, 1)  # with a wrong size it is a compute shader, too
         numbers = []
@@ -155,13 +157,20 @@ class MemoryChecker:
 
     def result(self, row: MemoryRow, values: tuple[ir.Expr, ...], call: s.CallOf) -> Typed:
         function, span = self.context.function, call.span
-        self.context.memory_operations.append(span)
+        if not row.has_place:
+            self.context.barriers.append(span)
         result = None
         if row.returns and (row.needs_result or id(call) not in self.expressions.dropped):
             type_ = values[0].type if row.values else INT
             result = function.temporary("old" if row.values else "count", None, type_=type_)
         function.prelude.append(ir.MemoryOperation(row.name, values, result, span))
         return Typed(result if result is not None else ir.Literal(VOID, 0, span))
+
+    def find_stage(self) -> None:
+        """Makes a compute shader without a size, whose workgroups have one invocation, a compute shader."""
+        context = self.context
+        if not context.workgroup and (context.language.compute or INVOCATION & context.variables.keys()):
+            context.workgroup = (1, 1, 1)
 
     def check_stage(self) -> None:
         """Reports what only a compute shader can have, in any other file, and what only a fragment shader can have."""
@@ -173,11 +182,10 @@ class MemoryChecker:
             return
         hint = "a compute shader has layout(local_size_x = 64) in;"
         for variable in context.variables.values():
-            if variable.storage in ("shared", "buffer"):
-                message = "storage buffers and shared memory belong to compute shaders"
-                context.reporter.error(variable.span, message, hint)
-        for span in context.memory_operations:
-            context.reporter.error(span, "atomics and barriers belong to compute shaders", hint)
+            if variable.storage == "shared":
+                context.reporter.error(variable.span, "shared memory belongs to compute shaders", hint)
+        for span in context.barriers:
+            context.reporter.error(span, "barriers belong to compute shaders", hint)
 
 
 def stored_directly(stmts: list[ir.Stmt], scopes: Scopes) -> list[ir.Stmt]:

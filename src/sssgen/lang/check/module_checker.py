@@ -117,8 +117,7 @@ class ModuleChecker:
         if context.plain and not context.reporter.diagnostics:
             functions = callees_first(functions, calls, self.function_checker.define_zeros)
         report_deep_calls(functions, calls, context.reporter)
-        if context.language.compute and not context.workgroup:
-            context.workgroup = (1, 1, 1)  # what the layout has by default
+        self.memory.find_stage()
         self.memory.check_stage()
         check_colors(context)
         main = functions.get("main()") if context.language.vertex else None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of, unnested
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of, passed_locations, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
@@ -21,7 +21,7 @@ from sssgen.lang.syntax import tree as s
 _MEMBER = {"uniform", "lowp", "mediump", "highp"}
 _MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
 _STORED = ("std140", "shared", "packed")
-_BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "binding", "set", "push_constant", "location"}
+_BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "scalar", "binding", "set", "push_constant", "location"}
 """What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
 
 
@@ -181,7 +181,7 @@ class ShaderInterface:
                     label = replace(label, text=name)
                 renamed.append(replace(declarator, name=label))
             own = [keyword for keyword in member.qualifiers.keywords if keyword not in keywords]
-            layout = () if "uniform" in keywords else member.qualifiers.layout or block.qualifiers.layout
+            layout = () if "uniform" in keywords else member.qualifiers.layout
             qualifiers = s.Qualifiers((*keywords, *own), layout, block.qualifiers.span)
             declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
             members.append(s.GlobalSyntax(declaration, block.doc))
@@ -194,7 +194,9 @@ class ShaderInterface:
             raise context.fail(name.span, f"the block '{name.text}' is already declared", hint)
         check_global_name(context, name)
         context.uniform_blocks.add(name.text)
-        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, _BLOCK_LAYOUT)
+        pushed = any(item == "push_constant" for item, _ in block.qualifiers.layout)
+        layouts = _BLOCK_LAYOUT | {"std430"} if pushed else _BLOCK_LAYOUT
+        self.check_qualifiers(block.qualifiers, "a uniform block", {"uniform"}, layouts)
         for member in block.members:
             if "sampler" in member.type.name:
                 hint = "declare it outside of the block, as a uniform"
@@ -244,6 +246,19 @@ class ShaderInterface:
             )
             for uniform in uniforms
         ]
+
+    def place_members(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
+        """Gives the members of an input or output block with a location theirs: each follows the one before it."""
+        location = self.location(block.qualifiers)
+        if location < 0 or "uniform" in block.qualifiers.keywords:
+            return
+        variables = self.context.variables
+        for member in members:
+            for declarator in member.declaration.declarators:
+                variable = variables[declarator.name.text]
+                location = variable.location if variable.location >= 0 else location
+                variables[variable.name] = variable._replace(location=location)
+                location += passed_locations(variable.type)
 
     def name_instance(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
         """Makes the members of a block, which are declared by now, accessible by the block's instance name, if it has

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.loops import at_every_end, break_unless
-from sssgen.ir.types import BOOL, Array, Matrix, Struct
-from sssgen.ir.walk import written_root
+from sssgen.ir.types import BOOL, Array, Matrix, Struct, components
+from sssgen.ir.walk import all_expressions, written_root
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.builtin_forms import Polyfill
 from sssgen.passes.legal.ends import with_ends
@@ -48,7 +48,7 @@ class LegalStatements(LegalExpressions):
         value = stmt.value
         self.scope[stmt.name] = stmt
         if value is None:
-            return stmt
+            return stmt if self.capabilities.large_variables or self.is_needed(stmt) else None
         place = ir.Local(stmt.type, stmt.name, stmt.span)
         if isinstance(value, ir.Select) and not self.chooses(value):
             value = self.select(value, place)
@@ -59,6 +59,13 @@ class LegalStatements(LegalExpressions):
         begin = self.initial_value(value)
         new = self.scope[stmt.name] = stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
         return new
+
+    def is_needed(self, stmt: ir.Declare) -> bool:
+        """Whether a variable is small, or used by its function: WGSL takes variables of 8192 bytes (section 2.4.1)."""
+        if not isinstance(stmt.type, Array) or 4 * components(stmt.type) <= 8192 or self.current is None:
+            return True
+        parts = all_expressions(self.current.body or ())
+        return any(isinstance(part, ir.Local) and part.name == stmt.name for part in parts)
 
     def initial_value(self, value: ir.Expr) -> ir.Expr:
         """An initial value: there every language can list the parts of an array or struct."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array
-from sssgen.ir.walk import calls_of
+from sssgen.ir.walk import calls_of, written_root
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.array_results import by_out_parameter
 from sssgen.passes.legal.builtin_forms import Polyfill
@@ -18,6 +18,7 @@ from sssgen.passes.legal.legal_statements import LegalStatements, OutOfOrderErro
 from sssgen.passes.legal.part_stores import parts_of
 from sssgen.passes.lift_calls import Calls, lift, order_conflicts, reads_too_late
 from sssgen.passes.scopes import assigned
+from sssgen.passes.stage.storage_layout import byte_buffers
 from sssgen.passes.unsupported import Unsupported
 
 
@@ -96,13 +97,19 @@ class _Legaliser(LegalStatements):
             return self.legal_function(lift(function, self.calls))
 
     def writes_parts(self, function: ir.Function) -> bool:
-        """Whether a call writes a part of a variable into which the target has no store."""
+        """Whether a call writes a part of a variable into which the target has no store or reference."""
+        places = [
+            call.args[index] for call in calls_of(function.body or ()) for index in self.outs.get(call.function, ())
+        ]
         return any(
-            self.lacks_store(part)
-            for call in calls_of(function.body or ())
-            for index in self.outs.get(call.function, ())
-            for part in parts_of(call.args[index])
+            self.is_in_bytes(place) or any(self.lacks_store(part) for part in parts_of(place)) for place in places
         )
+
+    def is_in_bytes(self, place: ir.Expr) -> bool:
+        """Whether a place is in a storage buffer that the target has as bytes."""
+        base = written_root(place)
+        buffers = byte_buffers(self.module, self.capabilities) if isinstance(base, ir.Global) else ()
+        return base is not None and any(buffer.name == base.name for buffer in buffers)
 
     def legal_function(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls are where the target can have them."""

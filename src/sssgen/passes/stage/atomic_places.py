@@ -57,7 +57,7 @@ def check_atomics(module: Module) -> None:
 
 
 def _errors(module: Module) -> Iterator[Unsupported]:
-    places = atomic_places(module)
+    places = atomic_places(module) - {()}
     for function in module.functions:
         for stmt in statements(function.body or ()):
             if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].values and not memory_of(stmt.args[0]):

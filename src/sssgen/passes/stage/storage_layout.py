@@ -1,17 +1,18 @@
 """The layout of storage buffers: std430 and std140 (OpenGL 4.6, section 7.6.2.2), and what a target can have of them.
 
-WGSL's own layout is that of std430. An HLSL buffer has elements of one type without padding, so there a block has one
-member.
+WGSL's own layout is that of std430. An HLSL buffer has elements of one type without padding: others are bytes there.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.ir.nodes import Module, Variable
-from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components
+from sssgen.ir.nodes import Expr, Global, Index, Member, MemoryOperation, Module, Stmt, Variable
+from sssgen.ir.types import INT, Array, Matrix, Scalar, Struct, Type, Vector, components, spell
+from sssgen.ir.walk import expressions, operands, statements, subexpressions, written_places, written_root
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.variable_effects import effects
 
 
 class Extent(NamedTuple):
@@ -59,18 +60,68 @@ def _up(offset: int, alignment: int) -> int:
     return (offset + alignment - 1) // alignment * alignment
 
 
+def has_buffers(module: Module) -> bool:
+    """Whether a module has storage buffers."""
+    return any(variable.storage == "buffer" for variable in module.variables)
+
+
+def byte_buffers(module: Module, capabilities: Capabilities) -> list[Variable]:
+    """The storage buffers that a target has as bytes, as their layout is not that of elements without padding."""
+    buffers = [variable for variable in module.variables if variable.storage == "buffer"]
+    return [buffer for buffer in buffers if not capabilities.buffer_blocks and not _has_plain_elements(buffer)]
+
+
 def check_buffers(module: Module, capabilities: Capabilities) -> Module:
-    """The same module. Raises Unsupported for a storage buffer that the target lays out otherwise."""
+    """The same module. Raises Unsupported for a storage buffer that the target lacks, lays out otherwise, or copies."""
     for variable in module.variables:
-        if variable.storage == "buffer" and not capabilities.std140_buffers:
-            struct = variable.type
-            assert isinstance(struct, Struct)
-            if variable.layout == "std140" and _shape(struct, "std140") != _shape(struct, "std430"):
-                message = f"the std140 layout of '{struct.name}' is not that of this target: write std430"
-                raise Unsupported(message, variable.span)
-            if not capabilities.buffer_blocks:
-                _check_elements(struct, variable)
+        if variable.storage != "buffer":
+            continue
+        if not capabilities.storage_buffers:
+            raise Unsupported(f"'{variable.name}' is a storage buffer, which this target lacks", variable.span)
+        fixed = capabilities.buffer_blocks and not capabilities.std140_buffers
+        if fixed and _shape(variable.type, variable.layout) != _shape(variable.type, "std430"):
+            message = f"the std140 layout of '{spell(variable.type)}' is not that of this target: write std430"
+            raise Unsupported(message, variable.span)
+    names = {buffer.name for buffer in byte_buffers(module, capabilities)}
+    if names:
+        for function in module.functions:
+            for stmt in statements(function.body or ()):
+                _check_bytes(stmt, names)
     return module
+
+
+def _check_bytes(stmt: Stmt, names: set[str]) -> None:
+    """Raises Unsupported for what buffers of bytes cannot do."""
+    compares = isinstance(stmt, MemoryOperation) and stmt.name in ("atomicMin", "atomicMax")
+    if isinstance(stmt, MemoryOperation) and compares and stmt.args[0].type == INT and _is_in(stmt.args[0], names):
+        message = "a buffer of several members compares as uint here, not as int"
+        raise Unsupported(message, stmt.span, hint="declare a buffer that has this number alone")
+    whole = [] if isinstance(stmt, MemoryOperation) else [*expressions(stmt)]
+    for expr in [part for each in (*whole, *written_places(stmt)) for part in subexpressions(each)]:
+        inner = [part for part in operands(expr) if isinstance(part.type, Array) and _is_in(part, names)]
+        if inner and not isinstance(expr, Index | Member):
+            whole += inner
+    for expr in whole:
+        if isinstance(expr.type, Array) and _is_in(expr, names):
+            message = "an array in a buffer of several members is not copied as a whole here"
+            raise Unsupported(message, stmt.span, hint="copy its elements in a loop")
+
+
+def _is_in(expr: Expr, names: set[str]) -> bool:
+    base = written_root(expr)
+    return isinstance(base, Global) and base.name in names
+
+
+def read_buffers(module: Module) -> Module:
+    """A vertex shader whose storage buffers are readonly. Raises Unsupported where it writes one."""
+    written = set[str]().union(*[effect.writes for effect in effects(module).values()])
+    variables = []
+    for variable in module.variables:
+        if variable.storage == "buffer" and variable.name in written:
+            message = f"a vertex shader of this target cannot write the storage buffer '{variable.name}'"
+            raise Unsupported(message, variable.span, hint="write it in a compute or fragment shader")
+        variables.append(variable._replace(access="readonly") if variable.storage == "buffer" else variable)
+    return module._replace(variables=tuple(variables))
 
 
 def _shape(type_: Type, rule: str) -> list[tuple[int, int]]:
@@ -82,18 +133,15 @@ def _shape(type_: Type, rule: str) -> list[tuple[int, int]]:
     return [*own, *_shape(type_.element, rule)] if isinstance(type_, Array) else own
 
 
-def _check_elements(struct: Struct, variable: Variable) -> None:
-    """A block of one member, whose elements have no padding."""
+def _has_plain_elements(variable: Variable) -> bool:
+    """Whether a block has one member, whose elements have no padding."""
+    struct = variable.type
+    assert isinstance(struct, Struct)
     (first, *others) = struct.fields
-    if others:
-        message = f"'{struct.name}' has several members, and a buffer of this target has elements of one type"
-        raise Unsupported(f"{message}: split it into blocks of one member", variable.span)
     element = first.type.element if isinstance(first.type, Array) else first.type
-    if _has_padding(element) or (
-        isinstance(first.type, Array) and extent(first.type, "std430").stride != _tight(element)
-    ):
-        message = f"the elements of '{struct.name}' have padding, which this target's buffers have not"
-        raise Unsupported(f"{message}: use vectors of two or four", variable.span)
+    is_array = isinstance(first.type, Array)
+    stride = extent(first.type, variable.layout).stride
+    return not others and not _has_padding(element) and (not is_array or stride == _tight(element))
 
 
 def _has_padding(type_: Type) -> bool:

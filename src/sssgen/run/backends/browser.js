@@ -6,8 +6,8 @@
 /** @typedef {{ at: number, size: number }} Piece */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */
 /** @typedef {<T extends { destroy(): void }>(resource: T) => T} Keep  Destroys it after the picture. */
-/** @typedef {{ group: number, binding: number, sampler: number, view: GPUTextureViewDimension, filter: GPUFilterMode, wrap: GPUAddressMode,
- *   compare: GPUCompareFunction | '', format: GPUTextureFormat, dimension: GPUTextureDimension, bytes_per_texel: number,
+/** @typedef {{ group: number, binding: number, sampler: number, view: GPUTextureViewDimension, filter: GPUFilterMode,
+ *   between: GPUMipmapFilterMode, wrap: GPUAddressMode, compare: GPUCompareFunction | '', format: GPUTextureFormat, dimension: GPUTextureDimension, bytes_per_texel: number,
  *   levels: { size: number[], data: Piece }[] }} Texture */
 /** @typedef {{ code: string, vertex_code: string, vertex: string, fragment: string, format: GPUTextureFormat, groups: GPUBindGroupLayoutEntry[][],
  *   attributes: GPUVertexAttribute[], stride: number, width: number, height: number, vertices: Piece, triangles: Piece,
@@ -149,12 +149,12 @@ function bindBlocks(plan, groups, piece, keep) {
 /** @param {Plan} plan @param {GPUBindGroupEntry[][]} groups @param {PieceOf} piece @param {Keep} keep */
 function bindTextures(plan, groups, piece, keep) {
   for (const texture of plan.textures) {
-    const { group, binding, sampler, view, filter, wrap, compare } = texture;
+    const { group, binding, sampler, view, filter, between, wrap, compare } = texture;
     groups[group].push({ binding, resource: keep(uploaded(texture, piece)).createView({ dimension: view }) });
     if (sampler < 0) continue;
     const wraps = { addressModeU: wrap, addressModeV: wrap, addressModeW: wrap };
     /** @type {GPUSamplerDescriptor} */
-    const filters = { magFilter: filter, minFilter: filter, mipmapFilter: "linear" };
+    const filters = { magFilter: filter, minFilter: filter, mipmapFilter: between };
     const compares = compare ? { compare } : {};
     groups[group].push({ binding: sampler, resource: device.createSampler({ ...wraps, ...filters, ...compares }) });
   }

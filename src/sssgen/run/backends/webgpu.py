@@ -166,7 +166,9 @@ class WebGPU(DrawingBackend):
             entries.append({"binding": texture.binding, "resource": view})
             if texture.sampler >= 0:
                 wraps = {f"address_mode_{axis}": texture.wrap for axis in "uvw"}
-                filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {"mipmap_filter": "linear"}
+                filters = dict.fromkeys(("mag_filter", "min_filter"), texture.filter) | {
+                    "mipmap_filter": texture.between
+                }
                 sampler = self.gpu.create_sampler(**filters, **wraps, compare=texture.compare or None)
                 entries.append({"binding": texture.sampler, "resource": sampler})
         return groups

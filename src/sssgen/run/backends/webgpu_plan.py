@@ -33,6 +33,8 @@ class TexturePlan(NamedTuple):
     view: str
     """Of the view: 2d, 3d, cube, 2d-array or cube-array."""
     filter: str
+    between: str
+    """The filter between levels."""
     wrap: str
     levels: list[Level]
     compare: str = ""
@@ -99,7 +101,9 @@ def texture_plan(bound: Bound) -> TexturePlan:
     if not isinstance(data, Texture):
         size = data.shape[1], data.shape[0], 1
         level = Level(size, np.ascontiguousarray(data, np.uint32).tobytes())
-        return TexturePlan(place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "repeat", [level])
+        return TexturePlan(
+            place.group, place.binding, -1, "rgba32uint", 16, "2d", "2d", "nearest", "nearest", "repeat", [level]
+        )
     format, bytes_per_texel = _FORMATS["depth" if data.compare else data.kind]
     levels = []
     for texels in data.levels:
@@ -107,10 +111,12 @@ def texture_plan(bound: Bound) -> TexturePlan:
         levels.append(Level(size, _bytes(texels, format)))
     dimension = "3d" if data.dim == "3D" else "2d"
     view = data.dim.lower() + ("-array" if data.layers else "")
+    between = "nearest" if data.kind in ("int", "uint") and not data.compare else "linear"
+    filter = data.filter if between == "linear" else between
     wrap, compare = _WRAP[data.wrap], "less-equal" if data.compare else ""
     return TexturePlan(
-        place.group, place.binding, place.sampler, format, bytes_per_texel, dimension, view, data.filter, wrap, levels,
-        compare,
+        place.group, place.binding, place.sampler, format, bytes_per_texel, dimension, view, filter, between, wrap,
+        levels, compare,
     )  # fmt: skip
 
 
@@ -139,6 +145,7 @@ def layout_entries(plan: Plan) -> dict[int, list[dict[str, Any]]]:
         resources = groups.setdefault(texture.group, [])
         resources.append({"binding": texture.binding, "visibility": fragment, "texture": reads})
         if texture.sampler >= 0:
-            sampler = {"type": "comparison" if texture.compare else "filtering"}
+            filters = "filtering" if texture.between == "linear" else "non-filtering"
+            sampler = {"type": "comparison" if texture.compare else filters}
             resources.append({"binding": texture.sampler, "visibility": fragment, "sampler": sampler})
     return groups

@@ -19,9 +19,10 @@ from sssgen.ir.walk import subexpressions
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers import hlsl_sizes
+from sssgen.targets.printers.byte_buffers import BytePrinter
 from sssgen.targets.printers.hlsl_entry import print_entry
 from sssgen.targets.printers.printed_lines import Line, with_doc
-from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY
 from sssgen.targets.uniform_layout import Member
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ LONGEST_UNROLLED = 8
 """Loops with more rounds than this are not unrolled."""
 
 
-class HlslPrinter(Printer):
+class HlslPrinter(BytePrinter):
     """One printer for all dialects; the descriptor has the texts of textures and uniforms."""
 
     constant = "static const"
@@ -155,25 +156,28 @@ class HlslPrinter(Printer):
             return self.with_comments(variable, [Line(text, variable.span)])
         if variable.storage != "buffer":
             return super().print_variable(variable)
-        assert isinstance(variable.type, Struct)
-        (member,) = variable.type.fields
-        element = member.type.element if isinstance(member.type, Array) else member.type
-        kind, register = ("StructuredBuffer", "t") if variable.access == "readonly" else ("RWStructuredBuffer", "u")
+        register, written = ("t", "") if variable.access == "readonly" else ("u", "RW")
+        kind = f"{written}ByteAddressBuffer"
+        if variable.name not in self.bytes:
+            assert isinstance(variable.type, Struct)
+            (member,) = variable.type.fields
+            element = member.type.element if isinstance(member.type, Array) else member.type
+            kind = f"{written}StructuredBuffer<{self.type(element)}>"
         first = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms]) if register == "t" else 0
         place = f"register({register}{first + self.buffer_binding(variable)})"
-        text = f"{kind}<{self.type(element)}> {variable.name} : {place};"
+        text = f"{kind} {variable.name} : {place};"
         return self.with_comments(variable, [Line(text, variable.span)])
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
         """An expression; the member of a storage buffer is the buffer, or its first element."""
         if isinstance(expr, ir.Member) and isinstance(expr.value, ir.Global):
             name = expr.value.name
-            if any(buffer.name == name for buffer in self.buffers):
+            if name not in self.bytes and any(buffer.name == name for buffer in self.buffers):
                 return (name, PRIMARY) if isinstance(expr.type, Array) else (f"{name}[0]", POSTFIX)
         return super().bound(expr)
 
     def memory(self, stmt: ir.MemoryOperation) -> str:
-        if stmt.name != "arrayLength" or stmt.result is None:
+        if stmt.name != "arrayLength" or stmt.result is None or self.place_of(stmt.args[0]) is not None:
             return super().memory(stmt)
         name = self.expr(stmt.result)
         size, stride = self.free_name(f"{name}_size"), self.free_name(f"{name}_stride")
