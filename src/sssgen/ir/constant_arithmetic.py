@@ -101,6 +101,18 @@ def outside(name: str, args: Sequence[Numbers], types: Sequence[Type], result: T
         return True
 
 
+def unchecked(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> list[float]:
+    """What a builtin of constants that are `outside` comes to, with inf and NaN; zeros where that is not known."""
+    zeros = [0.0] * components(result)
+    try:
+        values = [float(value) for value in _values(name, args, types, kind_of(result)) or ()]
+    except OverflowError:
+        return [math.inf] * len(zeros)
+    except (ArithmeticError, ValueError):
+        return zeros
+    return values if len(values) == len(zeros) else zeros
+
+
 def reason(name: str, args: Sequence[Numbers], kind: str) -> str:
     """Why a builtin of constants that are `outside` has no value: what its row says, or an overflow."""
     row = BUILTINS[name]

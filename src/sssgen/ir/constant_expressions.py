@@ -38,11 +38,11 @@ def zero(type: Type, span: Span) -> Expr:
 
 
 def literal(type: Type, values: Numbers, span: Span) -> Expr:
-    """Scalars or a vector as literals; `vec3(1.0)` where all are the same."""
+    """Scalars, a vector or a matrix as literals; `vec3(1.0)` where all are the same."""
     if isinstance(type, Scalar):
         return Literal(type, values[0], span)
     scalar = Scalar(kind_of(type))
-    if all(same_number(value, values[0]) for value in values):
+    if isinstance(type, Vector) and all(same_number(value, values[0]) for value in values):
         values = values[:1]
     return Construct(type, tuple([Literal(scalar, value, span) for value in values]), span)
 

@@ -159,7 +159,7 @@ KEPT: tuple[Pass, ...] = (
     *_SHADER_INPUT,
     Pass("called", steps.drop_uncalled, "leave out the functions that the called ones do not need", _CALLED),
     Pass("roots", steps.find_roots, "take every function as called from outside"),
-    _UNDEFINED._replace(reason="refuse constants without a value", when=_NO_UNDEFINED),
+    Pass("undefined", steps.settle_undefined_constants, "give constants without a value one", _NO_UNDEFINED),
     _HOIST._replace(step=steps.hoist_derivatives_of_entry, when=_NO_LEVELS),
     _GUARDS,
 )

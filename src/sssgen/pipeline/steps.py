@@ -35,8 +35,8 @@ from sssgen.passes.stage.storage_layout import check_buffers
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.varying_parts import varying_parts
 from sssgen.passes.stage.varyings import interpolated_alike, mismatches
-from sssgen.passes.undefined_constants import undefined_constants
-from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.undefined_constants import settled_constants, undefined_constants
+from sssgen.passes.unsupported import Note, Unsupported
 from sssgen.pipeline.material_stages import slot_functions, stages_for
 from sssgen.pipeline.state import State
 from sssgen.support.diagnostics import Diagnostic, SssgenError
@@ -163,6 +163,13 @@ def refuse_undefined_constants(state: State) -> Module:
         hint = "WGSL refuses it, and the others compute inf, NaN or any value"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
     return state.module
+
+
+def settle_undefined_constants(state: State) -> Module:
+    module, undefined = settled_constants(state.module)
+    hint = "GLSL leaves it undefined, or infinite: here it is a number, as this target has no other constants"
+    state.notes += [Note(message, span, hint) for message, span in undefined]
+    return module
 
 
 def prune_unused(state: State) -> Module:

@@ -196,6 +196,9 @@ class ExpressionChecker:
     def number(self, number: s.Number) -> Typed:
         if number.is_float:
             real = float(number.text.rstrip("fFlL"))
+            if real > FLOAT_MAX and self.context.plain:  # infinity, which no literal is
+                one, zero = (ir.Literal(FLOAT, value, number.span) for value in (1.0, 0.0))
+                return Typed(ir.Binary(FLOAT, "/", one, zero, number.span))
             if real > FLOAT_MAX:
                 raise self.context.fail(number.span, f"{number.text} does not fit in a float")
             return Typed(ir.Literal(FLOAT, real, number.span))
