@@ -34,6 +34,8 @@ class Capabilities(NamedTuple):
     """A loop may have no exit."""
     float_array_uniforms: bool = False
     """Array elements in a uniform block may be smaller than 16 bytes; if not, each is a vector of four."""
+    folded_variables: bool = False
+    """A variable that nothing writes becomes a constant, which compilers compute."""
     hiding: bool = False
     """A function's parameters and variables may have the names of uniforms, constants and module variables that it
     does not use."""

@@ -80,12 +80,11 @@ _SHELL = Condition("the target has no engine", lambda state: state.has_shell)
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
 _NO_LEVELS = _target("has no derivatives in non-uniform flow", lambda can: not can.implicit_levels)
 _NEVER_UNDEFINED = _target(
-    "refuses undefined constants and has no module variables",
-    lambda can: not (can.undefined_constants or can.module_variables),
+    "refuses undefined constants, also as variables",
+    lambda can: not can.undefined_constants and can.folded_variables,
 )
 _LATE = _target(
-    "refuses undefined constants and has module variables",
-    lambda can: can.module_variables and not can.undefined_constants,
+    "refuses undefined constants, but no variables", lambda can: not (can.undefined_constants or can.folded_variables)
 )
 _NO_VARIABLES = _target("has no module variables", lambda can: not can.module_variables)
 _CONSTANT_VALUES = Condition(
