@@ -169,7 +169,8 @@ class MemoryChecker:
     def find_stage(self) -> None:
         """Makes a compute shader without a size, whose workgroups have one invocation, a compute shader."""
         context = self.context
-        if not context.workgroup and (context.language.compute or INVOCATION & context.variables.keys()):
+        is_compute = context.language.compute or INVOCATION & context.variables.keys()
+        if is_compute and not context.workgroup and "main" in context.functions:
             context.workgroup = (1, 1, 1)
 
     def check_stage(self) -> None:
