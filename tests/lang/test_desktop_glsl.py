@@ -101,6 +101,26 @@ def test_separate_textures_are_one_with_their_samplers() -> None:
         assert not complaint(transpile(module, target, "shader", keep=True).files)
 
 
+def test_an_array_of_blocks_is_a_block_for_each_element() -> None:
+    text = (
+        "#version 450\nlayout(location = 0) out vec4 color;\n"
+        "layout(location = 1) in Vertex { vec3 a; vec2 b; } v[2];\n"
+        "layout(std140, binding = 2) uniform Camera { vec3 eye; mat4 view; } cameras[2];\n"
+        "layout(std430, binding = 5) buffer Data { uint n; float x[]; } data[2];\n"
+        "void main() { color = vec4(cameras[1].eye + v[1].a, data[1].x[2]); atomicAdd(data[0].n, 2u); }\n"
+    )
+    module = load(text, "arrays.frag")
+    places = {variable.name: variable.location for variable in module.variables if variable.name != "color"}
+    assert places == {"Vertex_0_a": 1, "Vertex_0_b": 2, "Vertex_1_a": 3, "Vertex_1_b": 4, "data_0": 5, "data_1": 6}
+    assert [uniform.source for uniform in module.uniforms if "eye" in uniform.name] == [
+        "Camera[0].eye",
+        "Camera[1].eye",
+    ]
+    pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
+    for target in ("wgsl", "hlsl", "glsl-330"):
+        assert not complaint(transpile(module, target, "shader", keep=True).files)
+
+
 def test_sizes_of_workgroups() -> None:
     body = "layout(push_constant, std430) uniform Push { uint by[3]; } push;\nvoid main() { memoryBarrierImage(); }\n"
     assert load("#version 450\n" + body, "a.comp").workgroup == (1, 1, 1)

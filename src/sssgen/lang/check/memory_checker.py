@@ -61,8 +61,6 @@ class MemoryChecker:
     def buffer(self, block: s.BlockSyntax) -> None:
         """A storage buffer: a variable whose type is the struct of its members."""
         context, keywords = self.context, block.qualifiers.keywords
-        if block.lengths:
-            raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         fields: list[Field] = []
         for member in block.members:
             for declarator in member.declarators:
