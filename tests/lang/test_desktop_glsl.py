@@ -30,10 +30,13 @@ layout(set = 0, binding = 1) uniform sampler reads;
 layout(set = 0, binding = 2) uniform texture2D depths;
 layout(set = 0, binding = 3) uniform samplerShadow compares;
 layout(set = 0, binding = 4) uniform texture2DArray layers[2];
+layout(set = 0, binding = 5) uniform texture2D depths_too;
 vec4 twice(texture2D t, sampler s, vec2 at) { return 2.0 * texture(sampler2D(t, s), at); }
+float seen(samplerShadow s, texture2D t, vec3 at) { return texture(sampler2DShadow(t, s), at); }
+float seen_twice(texture2D t, samplerShadow s) { return seen(s, t, vec3(0.5)); }
 void main() {
     color = twice(image, reads, uv) + texture(sampler2D(image, reads), uv) + texelFetch(image, ivec2(0), 0);
-    color.x += texture(sampler2DShadow(depths, compares), vec3(uv, 0.5));
+    color.x += texture(sampler2DShadow(depths, compares), vec3(uv, 0.5)) + seen_twice(depths_too, compares);
     color.y += texture(sampler2DArray(layers[1], reads), vec3(uv, 1.0)).x;
 }
 """
@@ -92,8 +95,9 @@ def test_what_has_no_storage_buffers() -> None:
 
 def test_separate_textures_are_one_with_their_samplers() -> None:
     module = load(SEPARATE, "separate.frag")
-    assert [uniform.name for uniform in module.uniforms] == ["image", "depths", "layers_0", "layers_1"]
+    assert [uniform.name for uniform in module.uniforms] == ["image", "depths", "layers_0", "layers_1", "depths_too"]
     text = first(transpile(module, "glsl-330", "shader", keep=True))
+    assert "float seen(sampler2DShadow t, vec3 at)" in text and "sampler2DShadow depths_too;" in text
     assert "uniform sampler2DShadow depths;" in text and "vec4 twice(sampler2D t, vec2 at)" in text
     assert "twice(image, uv) + texture(image, uv) + texelFetch(image, ivec2(0), 0)" in text
     pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
