@@ -1,6 +1,6 @@
 """The GraphicsFuzz cases of VK-GL-CTS: files `*.amber`, as their owner publishes them.
 
-The programs are SPIR-V; a comment before each has the GLSL that it was made of, which is what is read here. Commands
+The programs are SPIR-V; a comment before most has the GLSL that it was made of, which is what is read here. Commands
 give the buffers, the size of the picture and what is expected of it.
 """
 
@@ -18,6 +18,8 @@ from qualification.suites.outcomes import SuiteFormatError
 _TYPE = re.compile(r"(?:mat(?P<columns>\d)x(?P<rows>\d)|vec(?P<size>\d))?<?(?P<kind>float|u?int32)>?(?:\[\])?")
 _KINDS: dict[str, type] = {"float": np.float32, "int32": np.int32, "uint32": np.uint32}
 _TEST = re.compile(r"^\[test\]$", re.MULTILINE)
+ASSEMBLY = "; assembly"
+"""The first line of a text that is SPIR-V, for want of a comment"""
 PUSH = "push_constant"
 """The place of constants that need no binding."""
 
@@ -26,7 +28,7 @@ class Pipeline(NamedTuple):
     """A program with what is bound to it, and how it runs."""
 
     stages: dict[str, str]
-    """`vertex`, `fragment` or `compute` → GLSL; '' for a vertex shader that passes positions on"""
+    """`vertex`, `fragment` or `compute` → GLSL or ASSEMBLY; '' for a vertex shader that passes positions on"""
     size: tuple[int, int]
     """Of its picture"""
     target: str
@@ -88,8 +90,8 @@ def _commands(name: str, text: str) -> Case:
             case ["SHADER", stage, shader, "PASSTHROUGH"]:
                 shaders[shader] = stage, ""
             case ["SHADER", stage, shader, kind, *_]:
-                body = _block(lines)
-                shaders[shader] = stage, source if kind == "SPIRV-ASM" else "\n".join([*body, ""])
+                body = "\n".join([*_block(lines), ""])
+                shaders[shader] = stage, (source or f"{ASSEMBLY}\n{body}") if kind == "SPIRV-ASM" else body
                 source = ""
             case ["BUFFER", buffer, "DATA_TYPE", type_, *words, "DATA"]:
                 types[buffer] = type_

@@ -71,11 +71,11 @@ _VALUES = (
     "build, or must fail."
 )
 _AMBER_ABOUT = (
-    "The GLSL is that of the comments in a file. Each program draws the picture of the file's size, with its "
-    "buffers and textures, and the colors of 8 bits have to be those that the file expects, or two pictures have "
-    "equal histograms, within its tolerance. NumPy computes nine blocks of 4 by 4 pixels, as does a back end that "
-    f"takes more than {SECONDS:g} seconds for the picture. Compute shaders leave the expected numbers in a buffer. "
-    "Files without GLSL are skipped."
+    "The GLSL is that of the comments in a file, or spirv-cross makes it of the SPIR-V. Each program draws the "
+    "picture of the file's size, with its buffers and textures, and the colors of 8 bits have to be those that "
+    "the file expects, or two pictures have equal histograms, within its tolerance. NumPy computes nine blocks of "
+    f"4 by 4 pixels, as does a back end that takes more than {SECONDS:g} seconds for the picture. Compute shaders "
+    "leave the expected numbers in a buffer. Where spirv-cross is missing, files without GLSL are skipped."
 )
 _WEBGL_ABOUT = (
     "Pages of `GLSLConformanceTester` list programs: what they render has to be of one color; others build, or "
@@ -87,7 +87,8 @@ _SAMPLES_ABOUT = (
     "Each sample draws a quarter of its picture with the values of its JSON file. A translation is right where at "
     "most 2 % of the pixels are more than 1 of 255 apart from what the driver makes of the author's text, or else "
     "where all pixels agree, of nine blocks, that depend neither on rounding nor on what GLSL leaves undefined, "
-    "as the interpreter of `--verify` finds. Compute shaders leave the same buffers."
+    "as the interpreter of `--verify` finds. Where WGSL and NumPy are both against the driver, NumPy decides. "
+    "Compute shaders leave the same buffers."
 )
 _DEQP = "qualification.suites.deqp_runs:run_cases"
 _TEXTS = "qualification.suites.text_cases:run_cases"

@@ -141,6 +141,8 @@ class Runner:
         self.backends: dict[str, Backend] = {}
         self.targets = targets
         self.seconds: defaultdict[str, float] = defaultdict(float)
+        self.head = ""
+        """Declarations that all programs share."""
 
     def backend(self, name: str) -> Backend:
         if name not in self.backends:
@@ -162,7 +164,8 @@ class Runner:
         """What is wrong with programs that can stand in one text."""
         failures: list[tuple[Case, Failure]] = []
         try:
-            module = self.timed("parse", load_glsl_text, "".join(case.text for case in cases), "fuzzed.glsl").module
+            text = self.head + "".join(case.text for case in cases)
+            module = self.timed("parse", load_glsl_text, text, "fuzzed.glsl").module
         except Exception as error:
             if len(cases) == 1:
                 return [(cases[0], self.failure("front end", error))]

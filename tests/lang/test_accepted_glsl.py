@@ -72,5 +72,5 @@ def test_the_range_of_depths_is_a_uniform() -> None:
 def test_a_compute_shader_without_the_size_of_its_workgroup() -> None:
     text = "layout(std430) buffer Numbers { float x[]; };\nvoid main() { x[gl_GlobalInvocationID.x] = 1.0; }\n"
     assert load_glsl_text(text, "case.comp").module.workgroup == (1, 1, 1)
-    with pytest.raises(SssgenError, match="belong to compute shaders"):
-        load_glsl_text(text, "case.glsl")
+    with pytest.raises(SssgenError, match="belongs to compute shaders"):
+        load_glsl_text("shared float x[4];\nvoid main() { x[0] = 1.0; }\n", "case.glsl")

@@ -17,6 +17,7 @@ from sssgen.pipeline.compiler import transpile
 from sssgen.run.backend_registry import BACKENDS, SINGLE
 from sssgen.run.backends import Backend, Call, Text
 from sssgen.support.diagnostics import SssgenError
+from whole_shaders import compile_errors
 
 LOWEST, HIGHEST, MOST = -(2**31), 2**31 - 1, 2**32 - 1
 DTYPES = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
@@ -156,8 +157,12 @@ UNDEFINED = [
 
 
 @pytest.mark.parametrize(("text", "message"), UNDEFINED)
-def test_constants_without_a_value_are_errors_where_the_target_refuses_them(text: str, message: str) -> None:
+def test_constants_without_a_value(text: str, message: str) -> None:
+    """They are errors where a language refuses them, except in WGSL, where the device computes them."""
     module = load_glsl_text(text, "case.glsl").module
     with pytest.raises(SssgenError, match=message):
-        transpile(module, "wgsl", "case", "none", keep=True)
-    transpile(module, "hlsl", "case", "none", keep=True)
+        transpile(module, "tsl", "case", "none", keep=True)
+    compiled = transpile(module, "wgsl", "case", "none", keep=True)
+    assert [message in warning.message for warning in compiled.warnings] == [True]
+    assert compile_errors(next(iter(compiled.files.values())), "wgsl", "library") == []
+    assert not transpile(module, "hlsl", "case", "none", keep=True).warnings

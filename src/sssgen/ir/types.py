@@ -147,6 +147,13 @@ def components(type: Type) -> int:
     return 0
 
 
+def uniform_locations(type: Type) -> int:
+    """How many locations a uniform of this type takes: one for each member and element that is no struct or array."""
+    if isinstance(type, Array):
+        return type.length * uniform_locations(type.element)
+    return sum(uniform_locations(field.type) for field in type.fields) if isinstance(type, Struct) else 1
+
+
 def passed_locations(type: Type) -> int:
     """How many locations an input or output of this type takes: one for each scalar, vector and column of a matrix."""
     if isinstance(type, Array):
@@ -163,13 +170,6 @@ def component_kinds(type: Type) -> list[str]:
     if isinstance(type, Struct):
         return [kind for field in type.fields for kind in component_kinds(field.type)]
     return [kind_of(type)] * components(type)
-
-
-def uniform_locations(type: Type) -> int:
-    """How many locations a uniform of this type takes: one for each member and element that is no struct or array."""
-    if isinstance(type, Array):
-        return type.length * uniform_locations(type.element)
-    return sum(uniform_locations(field.type) for field in type.fields) if isinstance(type, Struct) else 1
 
 
 def column_size(type: Type) -> int:

@@ -1,0 +1,139 @@
+"""Programs whose results are known by construction, and rewrites that keep results; by hand: `metamorphic.py`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import metamorphic
+from glsl_batches import TARGETS
+from ir_rewrites import rewritten
+from known_answers import SWITCHES
+from metamorphic_bases import Base, base_from, mutated_case, rewritten_case, same_case
+from metamorphic_cases import KnownCase, MetamorphicRunner, known_case
+from sssgen.ir.text import print_module
+from sssgen.run.backends import Backend
+
+FEW, MANY = 16, 640
+"""Known answers in a test run, and in a long one."""
+TEXT = """
+const float STEP = 0.25;
+struct Ray { vec3 at; vec3 along; };
+
+float height(vec2 p) { return sin(p.x) * 0.5 + cos(p.y * STEP); }
+
+bool hits(inout Ray ray, int steps, out int rounds) {
+    rounds = 0;
+    for (int i = 0; i < steps; i++) {
+        rounds = i;
+        if (ray.at.y < height(ray.at.xz)) { return true; }
+        ray.at += ray.along * STEP;
+    }
+    return false;
+}
+
+vec4 marched(vec3 at, vec3 along, int steps) {
+    Ray ray = Ray(at + vec3(0.0, 1.0, 0.0), along);
+    int rounds;
+    bool hit = hits(ray, steps & 7, rounds);
+    mat2 turn = mat2(0.6, 0.8, -0.8, 0.6);
+    vec2 turned = turn * ray.at.xz;
+    return hit ? vec4(ray.at, float(rounds)) : vec4(turned, 0.0, -1.0);
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def runners() -> Iterator[dict[str, MetamorphicRunner]]:
+    """One runner per target; its back ends end with the tests."""
+    runners = {target: MetamorphicRunner((target,)) for target in TARGETS}
+    yield runners
+    for runner in runners.values():
+        runner.close()
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory: pytest.TempPathFactory) -> Base:
+    folder = tmp_path_factory.mktemp("bases")
+    path = folder / "marched.glsl"
+    path.write_text(TEXT, encoding="utf-8")
+    bases = [base_from(path, folder, Random(seed)) for seed in range(8)]
+    return next(base for base in bases if base is not None and " marched(" in base.origin)
+
+
+def failures(runner: MetamorphicRunner, cases: list[KnownCase]) -> list[str]:
+    return [
+        f"{metamorphic.title(case, failure)}\n{failure.message}\n{case.text}"
+        for case, failure in runner.failures(cases)
+        if failure.kind != "tool"
+    ]
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_known_answers(backend: Callable[[str], Backend], runners: dict[str, MetamorphicRunner], target: str) -> None:
+    backend(target)
+    messages = failures(runners[target], [known_case(Random(f"few {number}"), number) for number in range(FEW)])
+    assert not messages, "\n\n".join(messages[:3])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", TARGETS)
+def test_many_known_answers(
+    backend: Callable[[str], Backend], runners: dict[str, MetamorphicRunner], target: str
+) -> None:
+    backend(target)
+    for start in range(0, MANY, metamorphic.BATCH):
+        cases = [known_case(Random(f"many {start + number}"), number) for number in range(metamorphic.BATCH)]
+        messages = failures(runners[target], cases)
+        assert not messages, "\n\n".join(messages[:3])
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_rewrites_keep_the_results(
+    backend: Callable[[str], Backend], runners: dict[str, MetamorphicRunner], base: Base, target: str
+) -> None:
+    backend(target)
+    random = Random(5)
+    cases = [same_case(base, 0), *(rewritten_case(base, random, number) for number in range(1, 9))]
+    messages = failures(runners[target], cases)
+    assert not messages, "\n\n".join(messages[:3])
+
+
+def test_mutations_have_the_results_of_the_interpreter(runners: dict[str, MetamorphicRunner], base: Base) -> None:
+    cases = [mutated_case(base, Random(number), number) for number in range(8)]
+    useful = [case for case in cases if case is not None]
+    assert len(useful) > 3 and any(case.expected.tolist() != base.expected.tolist() for case in useful)
+    assert not failures(runners["numpy"], useful)
+
+
+def test_a_rewrite_changes_the_text(base: Base) -> None:
+    texts = {print_module(rewritten(base.module, Random(seed))) for seed in range(10)}
+    assert len(texts) == 10 and all(SWITCHES in text for text in texts)
+
+
+def test_a_wrong_answer_is_found(runners: dict[str, MetamorphicRunner]) -> None:
+    case = known_case(Random("few 3"), 3)
+    case.text = case.text.replace("return v;", "return v + ivec4(0, 0, 1, 0);")
+    ((_, failure),) = runners["numpy"].failures([case])
+    assert failure.kind == "wrong"
+
+
+def test_a_rewrite_that_changes_a_result_is_found(runners: dict[str, MetamorphicRunner], base: Base) -> None:
+    case = rewritten_case(base, Random(5), 1)
+    assert case.text.count("0.25") == 1
+    case.text = case.text.replace("0.25", "0.26")
+    ((_, failure),) = runners["numpy"].failures([case])
+    assert failure.kind == "wrong"
+
+
+def test_a_run_is_resumed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--targets", "numpy", "-o", str(tmp_path), "--seed", "3"]
+    assert metamorphic.main(["--programs", "32", *arguments]) == 0
+    assert metamorphic.main(["--programs", "64", *arguments]) == 0
+    assert "64 programs (64 × known answer) × 1 targets (numpy): 0 faults" in capsys.readouterr().out
+    lines = (tmp_path / "done_3.jsonl").read_text("utf-8").splitlines()
+    assert sorted(json.loads(line)["number"] for line in lines) == [0, 1]
