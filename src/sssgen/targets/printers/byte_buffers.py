@@ -69,7 +69,7 @@ class BytePrinter(Printer):
         return " + ".join([*terms, *([str(place.offset)] if place.offset or not terms else [])])
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        place = self.place_of(expr)
+        place = self.place_of(expr) if self.bytes else None
         if place is None:
             return super().bound(expr)
         return self.load(place.buffer, expr.type, place.buffer.name, self.offset(place)), PRIMARY
