@@ -66,4 +66,4 @@ def _case(suite: str, path: Path, root: Path) -> TextCase:
 
 
 def _text(path: Path) -> str:
-    return path.read_text("utf-8", errors="replace")
+    return path.read_text("utf-8-sig", errors="replace")

@@ -137,6 +137,13 @@ def test_sizes_of_workgroups() -> None:
     assert load(used, "a.glsl").workgroup == (1, 1, 1)
 
 
+def test_variables_of_a_draw_by_their_first_names() -> None:
+    text = "#version 450\nvoid main() { gl_Position = vec4(gl_BaseVertexARB, gl_BaseInstanceARB, gl_DrawIDARB, 1); }\n"
+    assert {uniform.name for uniform in load(text, "a.vert").uniforms} == {
+        "gl_BaseVertexARB", "gl_BaseInstanceARB", "gl_DrawIDARB",
+    }  # fmt: skip
+
+
 def test_an_atomic_of_a_component_beside_a_copied_array() -> None:
     text = (
         "#version 450\nlayout(local_size_x = 1) in;\nstruct Ray { float far; };\n"
