@@ -27,6 +27,11 @@ def machines() -> Machines:
     return _open.enter_context(start_machines(tuple(BACKENDS)))
 
 
+def devices() -> dict[str, str]:
+    """The driver, the version and the device of each back end, by its title."""
+    return {BACKENDS[name]: machine.device() for name, machine in machines().running.items()}
+
+
 @functools.cache
 def drawing_machines(*names: str) -> dict[str, BackendProcess]:
     """The back ends of this process for pictures, without those that this machine lacks."""
