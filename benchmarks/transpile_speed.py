@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TypeVar
 
+from sssgen.lang.check.context import Language
 from sssgen.lang.check.module_checker import check_plain
 from sssgen.lang.plain_glsl import preprocess_text
 from sssgen.lang.syntax.parser import parse_tokens
@@ -87,7 +88,7 @@ def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
         words = timed("lex and preprocess", partial(preprocess_text, text, FILE))
         reporter = Reporter(FILE, text, words.texts)
         tree = timed("parse", partial(parse_tokens, words.tokens, words.comments, reporter, plain=True))
-        module = timed("check", partial(check_plain, tree, reporter, False))
+        module = timed("check", partial(check_plain, tree, reporter, Language()))
         for target in targets:
             timed(target, partial(transpile, module, target, "speed", keep=True))
     return results

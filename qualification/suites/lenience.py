@@ -24,6 +24,9 @@ LENIENCE = {
         r"interpolation_mismatch",
         "the fragment shader decides on the interpolation, as in GLSL from 4.40 on",
     ),
+    "Vulkan and OpenGL": Lenience(
+        r"glslang/(nonVulkan|spv\.|vk\.|glspv)", "a text may have what OpenGL's GLSL and what Vulkan's has"
+    ),
     OTHER: Lenience("", "no reason: to be refused"),
 }
 """Name → class; the last one has all other cases."""

@@ -30,10 +30,13 @@ layout(set = 0, binding = 1) uniform sampler reads;
 layout(set = 0, binding = 2) uniform texture2D depths;
 layout(set = 0, binding = 3) uniform samplerShadow compares;
 layout(set = 0, binding = 4) uniform texture2DArray layers[2];
+layout(set = 0, binding = 5) uniform texture2D depths_too;
 vec4 twice(texture2D t, sampler s, vec2 at) { return 2.0 * texture(sampler2D(t, s), at); }
+float seen(samplerShadow s, texture2D t, vec3 at) { return texture(sampler2DShadow(t, s), at); }
+float seen_twice(texture2D t, samplerShadow s) { return seen(s, t, vec3(0.5)); }
 void main() {
     color = twice(image, reads, uv) + texture(sampler2D(image, reads), uv) + texelFetch(image, ivec2(0), 0);
-    color.x += texture(sampler2DShadow(depths, compares), vec3(uv, 0.5));
+    color.x += texture(sampler2DShadow(depths, compares), vec3(uv, 0.5)) + seen_twice(depths_too, compares);
     color.y += texture(sampler2DArray(layers[1], reads), vec3(uv, 1.0)).x;
 }
 """
@@ -92,12 +95,33 @@ def test_what_has_no_storage_buffers() -> None:
 
 def test_separate_textures_are_one_with_their_samplers() -> None:
     module = load(SEPARATE, "separate.frag")
-    assert [uniform.name for uniform in module.uniforms] == ["image", "depths", "layers_0", "layers_1"]
+    assert [uniform.name for uniform in module.uniforms] == ["image", "depths", "layers_0", "layers_1", "depths_too"]
     text = first(transpile(module, "glsl-330", "shader", keep=True))
+    assert "float seen(sampler2DShadow t, vec3 at)" in text and "sampler2DShadow depths_too;" in text
     assert "uniform sampler2DShadow depths;" in text and "vec4 twice(sampler2D t, vec2 at)" in text
     assert "twice(image, uv) + texture(image, uv) + texelFetch(image, ivec2(0), 0)" in text
     pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
     for target in ("wgsl", "hlsl"):
+        assert not complaint(transpile(module, target, "shader", keep=True).files)
+
+
+def test_an_array_of_blocks_is_a_block_for_each_element() -> None:
+    text = (
+        "#version 450\nlayout(location = 0) out vec4 color;\n"
+        "layout(location = 1) in Vertex { vec3 a; vec2 b; } v[2];\n"
+        "layout(std140, binding = 2) uniform Camera { vec3 eye; mat4 view; } cameras[2];\n"
+        "layout(std430, binding = 5) buffer Data { uint n; float x[]; } data[2];\n"
+        "void main() { color = vec4(cameras[1].eye + v[1].a, data[1].x[2]); atomicAdd(data[0].n, 2u); }\n"
+    )
+    module = load(text, "arrays.frag")
+    places = {variable.name: variable.location for variable in module.variables if variable.name != "color"}
+    assert places == {"Vertex_0_a": 1, "Vertex_0_b": 2, "Vertex_1_a": 3, "Vertex_1_b": 4, "data_0": 5, "data_1": 6}
+    assert [uniform.source for uniform in module.uniforms if "eye" in uniform.name] == [
+        "Camera[0].eye",
+        "Camera[1].eye",
+    ]
+    pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
+    for target in ("wgsl", "hlsl", "glsl-330"):
         assert not complaint(transpile(module, target, "shader", keep=True).files)
 
 
@@ -111,6 +135,13 @@ def test_sizes_of_workgroups() -> None:
     )
     used = "#version 450\nbuffer A { uint a[]; };\nvoid main() { a[gl_LocalInvocationIndex] = gl_WorkGroupID.x; }\n"
     assert load(used, "a.glsl").workgroup == (1, 1, 1)
+
+
+def test_variables_of_a_draw_by_their_first_names() -> None:
+    text = "#version 450\nvoid main() { gl_Position = vec4(gl_BaseVertexARB, gl_BaseInstanceARB, gl_DrawIDARB, 1); }\n"
+    assert {uniform.name for uniform in load(text, "a.vert").uniforms} == {
+        "gl_BaseVertexARB", "gl_BaseInstanceARB", "gl_DrawIDARB",
+    }  # fmt: skip
 
 
 def test_an_atomic_of_a_component_beside_a_copied_array() -> None:

@@ -51,11 +51,14 @@ def test_glslang_says_which_texts_are_valid(tmp_path: Path) -> None:
             "good.frag": FRAGMENT,
             "bad.frag": "void main() { vec2 a = vec3(1.0); }",
             "unknown.frag": FRAGMENT,
+            "linked.frag": FRAGMENT,
+            "baseResults/linked.frag.out": "linked.frag\nERROR: Linking fragment stage: Missing entry point\n",
             "baseResults/good.frag.out": "good.frag\nShader version: 330\n",
             "baseResults/bad.frag.out": "bad.frag\nERROR: 0:1: '=' : cannot convert\n",
         },
     )
-    bad, good = text_folders.glslang(tmp_path)
+    bad, good, linked = text_folders.glslang(tmp_path)
+    assert linked.skipped and not good.skipped
     assert (bad.name, bad.valid) == ("glslang/bad.frag", False)
     assert (good.name, good.valid) == ("glslang/good.frag", True)
     assert outcomes(run_case(bad)) == {"front end": "right"}

@@ -116,3 +116,13 @@ def test_a_pixel_is_discarded_alone(backend: Callable[[str], Backend]) -> None:
     )
     (result,) = backend("metal").run(Text(text), [Call("f", (FLOAT,), FLOAT, (np.arange(4.0),))])
     np.testing.assert_array_equal(result, [1.0, 2.0, 3.0, 0.0])
+
+
+def test_vectors_of_integers_are_changed_in_place(backend: Callable[[str], Backend]) -> None:
+    text = (
+        "#include <metal_stdlib>\nusing namespace metal;\n"
+        "float f(float x) {\n    uint3 a = uint3(uint(x), 7u, 9u);\n    a %= uint3(4u);\n    a.xy <<= 1u;\n"
+        "    a.yz |= uint2(8u, 16u);\n    return float(a.x * 10000u + a.y * 100u + a.z);\n}\n"
+    )
+    (result,) = backend("metal").run(Text(text), [Call("f", (FLOAT,), FLOAT, (np.array([6.0, 9.0]),))])
+    np.testing.assert_array_equal(result, [41417.0, 21417.0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type, swizzle_type
 from sssgen.ir.types import INT, UINT, Array, Scalar, Struct, Vector, spell
@@ -67,8 +69,23 @@ class AccessChecker:
         texture = self.context.globals[textures[position]]
         return Typed(ir.Global(texture.type, textures[position], index.span), texture.quantity)
 
+    def in_block(self, member: s.MemberOf, index: s.IndexOf, name: s.Name) -> s.MemberOf:
+        """A member of an element of an array of blocks as one of the block in its place."""
+        context = self.context
+        if name.text not in context.block_arrays or context.function.scopes.find(name.text) is not None:
+            return member
+        blocks = context.block_arrays[name.text]
+        position = constant_int(context, index.index)
+        if position is None or not 0 <= position < len(blocks):
+            message = f"a block of '{name.text}' must be selected by a constant from 0 to {len(blocks) - 1}"
+            hint = "WebGPU has no arrays of buffers: write a switch with a case for each block"
+            raise context.fail(index.index.span, message, hint)
+        return replace(member, value=s.Name(blocks[position], index.span))
+
     def member(self, member: s.MemberOf) -> Typed:
         context = self.context
+        if isinstance(member.value, s.IndexOf) and isinstance(member.value.value, s.Name):
+            member = self.in_block(member, member.value, member.value.value)
         if isinstance(member.value, s.Name) and member.value.text in context.blocks:
             block, label = member.value.text, member.name
             if context.function.scopes.find(block) is None:

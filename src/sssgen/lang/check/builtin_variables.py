@@ -38,6 +38,7 @@ INVOCATION = {
 
 DRAW_UNIFORMS: dict[str, Type] = {
     "gl_ViewID_OVR": UINT, "gl_DrawID": INT, "gl_BaseVertex": INT, "gl_BaseInstance": INT,
+    "gl_DrawIDARB": INT, "gl_BaseVertexARB": INT, "gl_BaseInstanceARB": INT,
 }  # fmt: skip
 """The variables that are the same in a whole draw call (OVR_multiview2, ANGLE_multi_draw) and that WebGPU and D3D lack.
 They become uniforms, which a loop over views or draws sets."""

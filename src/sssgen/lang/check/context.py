@@ -122,6 +122,8 @@ class CheckContext:
         """Names whose declaration has an error. Their uses are not reported."""
         self.blocks: dict[str, dict[str, Typed]] = {}
         """The members of each block that has an instance name, by that name."""
+        self.block_arrays: dict[str, list[str]] = {}
+        """For each array of blocks, the instance names of the blocks that replace its elements."""
         self.aliases: dict[str, str] = {}
         """The names of the members of an input or output block without an instance name → those of the variables."""
         self.texture_arrays: dict[str, list[str]] = {}

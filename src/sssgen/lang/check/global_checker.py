@@ -30,18 +30,24 @@ class GlobalChecker:
         self.constants: list[ir.Constant] = []
         self.uniforms: list[ir.Uniform] = []
 
-    def block(self, block: s.BlockSyntax) -> None:
-        """The members of a block, as separate globals."""
+    def block(self, block: s.BlockSyntax, location: int = -1) -> int:
+        """Declares the members of a block as separate globals; `location` is that of the first where the block states
+        none. Gives the location after the last."""
+        if block.lengths and self.context.plain:
+            for element in self.interface.elements(block):
+                location = self.block(element, location)
+            return location
         if "buffer" in block.qualifiers.keywords and self.context.plain:
             self.memory.buffer(block)
-            return
+            return -1
         members = self.interface.members(block)
         count = len(self.uniforms)
         for member in members:
             self.global_(member, block.name.text)
-        self.interface.place_members(block, members)
+        location = self.interface.place_members(block, members, location)
         self.interface.name_instance(block, members)
         self.uniforms[count:] = self.interface.uniforms_of(block, members, self.uniforms[count:])
+        return location
 
     def global_(self, external: s.GlobalSyntax, block: str = "") -> None:
         """Declares variables; `block` is the block that they are members of, or ''."""

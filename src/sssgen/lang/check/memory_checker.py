@@ -61,8 +61,6 @@ class MemoryChecker:
     def buffer(self, block: s.BlockSyntax) -> None:
         """A storage buffer: a variable whose type is the struct of its members."""
         context, keywords = self.context, block.qualifiers.keywords
-        if block.lengths:
-            raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         fields: list[Field] = []
         for member in block.members:
             for declarator in member.declarators:
@@ -169,7 +167,8 @@ class MemoryChecker:
     def find_stage(self) -> None:
         """Makes a compute shader without a size, whose workgroups have one invocation, a compute shader."""
         context = self.context
-        if not context.workgroup and (context.language.compute or INVOCATION & context.variables.keys()):
+        is_compute = context.language.compute or INVOCATION & context.variables.keys()
+        if is_compute and not context.workgroup and "main" in context.functions:
             context.workgroup = (1, 1, 1)
 
     def check_stage(self) -> None:

@@ -163,8 +163,6 @@ class ShaderInterface:
         context, keywords = self.context, block.qualifiers.keywords
         if not context.plain:
             raise context.fail(block.name.span, "a technique cannot declare blocks", "write uniform …;")
-        if block.lengths:
-            raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         if block.name.text == "gl_PerVertex":
             return []
         if "uniform" in keywords:
@@ -247,11 +245,38 @@ class ShaderInterface:
             for uniform in uniforms
         ]
 
-    def place_members(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
-        """Gives the members of an input or output block with a location theirs: each follows the one before it."""
-        location = self.location(block.qualifiers)
+    def elements(self, block: s.BlockSyntax) -> list[s.BlockSyntax]:
+        """The blocks that replace an array of blocks, one for each element."""
+        context, (length, *others) = self.context, block.lengths
+        count = constant_int(context, length) if not isinstance(length, s.Unsized) else None
+        if others or count is None or not 1 <= count <= 64 or block.instance is None:
+            raise context.fail(length.span, "an array of blocks has one length, a constant from 1 to 64")
+        names = [unused_global_name(context, f"{block.instance.text}_{index}") for index in range(count)]
+        context.block_arrays[block.instance.text] = names
+        keywords, items = block.qualifiers.keywords, dict(block.qualifiers.layout)
+        first = constant_int(context, value) if (value := items.get("binding")) is not None else None
+        blocks = []
+        for index, name in enumerate(names):
+            label = f"{block.name.text}[{index}]" if "uniform" in keywords else f"{block.name.text}_{index}"
+            if first is not None:
+                items["binding"] = s.Number(str(first + index), False, length.span)
+            if index:
+                items.pop("location", None)  # it follows the element before
+            qualifiers = replace(block.qualifiers, layout=tuple(items.items()))
+            instance = replace(block.instance, text=name)
+            named = replace(block, name=replace(block.name, text=label), instance=instance)
+            blocks.append(replace(named, lengths=(), qualifiers=qualifiers))
+        return blocks
+
+    def place_members(self, block: s.BlockSyntax, members: list[s.GlobalSyntax], location: int) -> int:
+        """Gives the members of an input or output block with a location theirs: each follows the one before it.
+
+        `location` is that of a block that states none, or -1. Gives the location after the last member.
+        """
+        stated = self.location(block.qualifiers)
+        location = stated if stated >= 0 else location
         if location < 0 or "uniform" in block.qualifiers.keywords:
-            return
+            return -1
         variables = self.context.variables
         for member in members:
             for declarator in member.declaration.declarators:
@@ -259,6 +284,7 @@ class ShaderInterface:
                 location = variable.location if variable.location >= 0 else location
                 variables[variable.name] = variable._replace(location=location)
                 location += passed_locations(variable.type)
+        return location
 
     def name_instance(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
         """Makes the members of a block, which are declared by now, accessible by the block's instance name, if it has

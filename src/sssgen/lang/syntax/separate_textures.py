@@ -47,20 +47,38 @@ class _Joiner:
         self.shadows: set[str] = set()
         """The textures that are read with a comparison."""
         self.sampler_of: dict[str, str] = {}
+        self.compared: dict[tuple[str, int], set[int]] = {}
+        """The name and number of parameters of a function → the parameters that are textures with a comparison."""
 
-    def find_uses(self, node: object) -> None:
-        """Finds what each texture is read with."""
-        for call in _calls(node):
-            callee = call.callee.name if isinstance(call.callee, s.TypeName) else ""
+    def find_uses(self, externals: tuple[s.External, ...]) -> None:
+        """Finds what each texture is read with. A function is declared before its calls."""
+        for external in externals:
+            if isinstance(external, s.FunctionSyntax):
+                names = [param.name.text if param.name else "" for param in external.params]
+                shadows = self.find_in(external, names)
+                own = {index for index, name in enumerate(names) if name and name in shadows}
+                self.compared.setdefault((external.name.text, len(names)), set()).update(own)
+                self.shadows |= shadows & self.textures - {*names}
+
+    def find_in(self, function: s.FunctionSyntax, params: list[str]) -> set[str]:
+        """The textures and parameters that a function reads with a comparison."""
+        shadows: set[str] = set()
+        for call in _calls(function.body):
+            if isinstance(call.callee, s.TypeName):
+                compared = {0} if call.callee.name in _SHADOWS else set()
+            else:
+                name = call.callee.text if isinstance(call.callee, s.Name) else ""
+                compared = self.compared.get((name, len(call.args)), set())
             texture = ""
-            for arg in call.args:
+            for index, arg in enumerate(call.args):
                 name = _root(arg)
-                if name in self.textures:
+                if index in compared:
+                    shadows.add(name)
+                if name in self.textures and name not in params:
                     texture = name
-                    if callee in _SHADOWS:
-                        self.shadows.add(name)
-                elif name in self.samplers and texture:
+                elif name in self.samplers and name not in params and texture:
                     self.pair(texture, name, call.span)
+        return shadows
 
     def pair(self, texture: str, sampler: str, span: Span) -> None:
         first = self.sampler_of.setdefault(texture, sampler)
@@ -76,11 +94,15 @@ class _Joiner:
                 return None
             shadows = {declarator.name.text for declarator in declaration.declarators} & self.shadows
             if shadows and declaration.type.name in _JOINED:
-                type_ = replace(declaration.type, name=f"{_JOINED[declaration.type.name]}Shadow")
-                return replace(external, declaration=replace(declaration, type=type_))
+                return replace(external, declaration=replace(declaration, type=_shadow(declaration.type)))
         if isinstance(external, s.FunctionSyntax):
             own = {parameter.name.text for parameter in external.params if _is_sampler(parameter) and parameter.name}
-            params = [self.joined(parameter) for parameter in external.params if not _is_sampler(parameter)]
+            compared = self.compared.get((external.name.text, len(external.params)), set())
+            typed = [
+                replace(parameter, type=_shadow(parameter.type)) if index in compared else parameter
+                for index, parameter in enumerate(external.params)
+            ]
+            params = [self.joined(parameter) for parameter in typed if not _is_sampler(parameter)]
             outer, self.samplers = self.samplers, self.samplers | own
             body = self.joined(external.body)
             self.samplers = outer
@@ -103,6 +125,11 @@ class _Joiner:
             changed = {name: new for name, part in parts.items() if (new := self.joined(part)) is not part}
             return replace(node, **changed) if changed else node
         return node
+
+
+def _shadow(type_: s.TypeName) -> s.TypeName:
+    """The type of a texture with a comparison."""
+    return replace(type_, name=f"{_JOINED[type_.name]}Shadow") if type_.name in _JOINED else type_
 
 
 def _is_sampler(parameter: s.Parameter) -> bool:

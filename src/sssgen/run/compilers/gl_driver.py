@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from sssgen.run.compilers.calling_entry import glsl_entry
 from sssgen.run.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
@@ -17,6 +17,9 @@ _HEADERS = {
     "glsl-es-300": _ES,
     "shadertoy": _ES,
 }
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:version|extension)\b[^\n]*", re.MULTILINE)
+_STRUCT = re.compile(r"^[ \t]*struct \w+\s*\{[^{}]*\};", re.MULTILINE)
+_BASIC = re.compile(r"float|u?int|[iu]?vec[234]|mat[234](?:x[234])?")
 _EGL: Any = {"backend": "egl"}
 _SEVERITY: dict[str, Severity] = {"error": "error", "warning": "warning"}
 
@@ -101,26 +104,41 @@ def _empty_fragment(language: str) -> str:
     return f"{_HEADERS[language]}out vec4 sssgen_check;\nvoid main() {{ sssgen_check = vec4(0.0); }}\n"
 
 
-def _interface(text: str, direction: str) -> list[tuple[str, str, str, str]]:
-    """(interpolation, precision, type, name) of the stage's `in` or `out` variables."""
-    pattern = rf"(?:^|;)[ \t]*(?:layout\s*\([^)]*\)\s*)?((?:flat|smooth|centroid)\s+)?{direction}\s+"
-    pattern += r"((?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*;"
-    return re.findall(pattern, text, re.MULTILINE)
+class _Passed(NamedTuple):
+    """An `in` or `out` variable of a stage, in the parts of its declaration."""
+
+    layout: str
+    flat: str
+    precision: str
+    type: str
+    name: str
+    lengths: str
+
+
+def _interface(text: str, direction: str) -> list[_Passed]:
+    """The stage's `in` or `out` variables."""
+    pattern = rf"(?:^|;)[ \t]*(layout\s*\([^)]*\)\s*)?((?:flat|smooth|centroid)\s+)?{direction}\s+"
+    pattern += r"((?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*((?:\[\w+\]\s*)*);"
+    return [_Passed(*parts) for parts in re.findall(pattern, text, re.MULTILINE)]
 
 
 def _missing_outputs(vertex: str, fragment: str) -> list[Message]:
     """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
-    written = {name for *_, name in _interface(vertex, "out")}
-    names = [name for *_, name in _interface(fragment, "in") if name not in written]
+    written = {variable.name for variable in _interface(vertex, "out")}
+    names = [variable.name for variable in _interface(fragment, "in") if variable.name not in written]
     return [Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names]
 
 
 def _matching_vertex(fragment: str, language: str) -> str:
     """A vertex stage that feeds the `in` variables of `fragment`, so that it links on its own."""
     inputs = _interface(fragment, "in")
-    lines = [_HEADERS[language].rstrip("\n")]
-    lines += [f"{flat}out {precision}{kind} {name};" for flat, precision, kind, name in inputs]
-    lines += ["void main() {", *(f"    {name} = {kind}(0);" for _, _, kind, name in inputs)]
+    lines = _DIRECTIVE.findall(fragment) or [_HEADERS[language].rstrip("\n")]
+    lines += [f"precision highp {kind};" for kind in ("float", "int") if language in ("glsl-es-300", "shadertoy")]
+    types = {variable.type for variable in inputs}
+    lines += _STRUCT.findall(fragment) if any(re.search(rf"struct {name}\b", fragment) for name in types) else []
+    lines += [f"{each.layout}{each.flat}out {each.precision}{each.type} {each.name}{each.lengths};" for each in inputs]
+    written = [each for each in inputs if not each.lengths and _BASIC.fullmatch(each.type)]
+    lines += ["void main() {", *(f"    {each.name} = {each.type}(0);" for each in written)]
     return "\n".join([*lines, "    gl_Position = vec4(0.0);", "}", ""])
 
 

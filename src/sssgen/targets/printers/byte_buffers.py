@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
-from sssgen.ir.types import FLOAT, INT, UINT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, spell
+from sssgen.ir.types import FLOAT, INT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of, spell
 from sssgen.passes.stage.storage_layout import byte_buffers, extent, offsets
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import Line, wrap
@@ -69,7 +69,7 @@ class BytePrinter(Printer):
         return " + ".join([*terms, *([str(place.offset)] if place.offset or not terms else [])])
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        place = self.place_of(expr)
+        place = self.place_of(expr) if self.bytes else None
         if place is None:
             return super().bound(expr)
         return self.load(place.buffer, expr.type, place.buffer.name, self.offset(place)), PRIMARY
@@ -116,7 +116,7 @@ class BytePrinter(Printer):
 
     def typed(self, value: ir.Expr, type_: Type) -> str:
         """A value whose type is not that of a bare literal, of which `asuint` would not know it."""
-        is_literal = isinstance(value, ir.Literal) and type_ in (FLOAT, INT, UINT)
+        is_literal = isinstance(value, ir.Literal) and type_ in (FLOAT, INT)
         return f"{self.type(type_)}({self.expr(value)})" if is_literal else self.expr(value)
 
     def memory(self, stmt: ir.MemoryOperation) -> str:
