@@ -47,7 +47,7 @@ Judge: TypeAlias = Callable[[Drawn, Drawn | None], str]
 
 def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outcome]:
     """The outcomes of a case's programs, on the driver as written and on each back end as translated."""
-    running = drawing_machines(*TARGETS, NUMPY)
+    running = drawing_machines()
     try:
         translations = [Translations(program) for program in programs]
     except SssgenError as error:
