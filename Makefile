@@ -7,7 +7,7 @@
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores 110 minutes: docs/accuracy.md and docs/accuracy/*.md
 # make site   a first page with a live demo, the documents and the playground, static: build/site/index.html
-# make suites SUITES=FOLDER  shader suites of others, which the folder has: docs/suites.md
+# make suites SUITES=FOLDER [ONLY=gles2,piglit]  shader suites of others, which the folder has: docs/suites.md
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
@@ -123,7 +123,7 @@ stability: setup
 
 SUITES ?= ../suites
 suites: setup
-	$(BIN)/python -m qualification.suites $(SUITES) --write
+	$(BIN)/python -m qualification.suites $(SUITES) --suites "$(ONLY)" --write
 
 bake: setup
 	$(BIN)/python docs/bake.py

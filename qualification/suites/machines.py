@@ -39,6 +39,11 @@ def _with_limit(seconds: float) -> Machines:
     return started
 
 
+def devices() -> dict[str, str]:
+    """The driver, the version and the device of each back end, by its title."""
+    return {BACKENDS[name]: machine.device() for name, machine in machines().running.items()}
+
+
 @functools.cache
 def _started() -> Machines:
     return _open.enter_context(start_machines(tuple(BACKENDS)))

@@ -26,8 +26,18 @@ def table(results: Mapping[str, Sequence[Result]]) -> str:
     return "\n".join(lines)
 
 
-def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
-    """The page's text."""
+def totals(results: Mapping[str, Sequence[Result]]) -> str:
+    """The number of each outcome of all suites, by back end."""
+    lines = ["| back end | " + " | ".join(OUTCOMES) + " |", "|---|" + "---:|" * len(OUTCOMES)]
+    every = [result.outcomes for own in results.values() for result in own]
+    for name in dict.fromkeys(name for outcomes in every for name in outcomes):
+        counts = Counter(outcomes[name].outcome for outcomes in every if name in outcomes)
+        lines.append(f"| {_TITLES.get(name, name)} | {' | '.join(str(counts[each] or '') for each in OUTCOMES)} |")
+    return "\n".join(lines)
+
+
+def page(results: Mapping[str, Sequence[Result]], date: str, every: int, devices: Mapping[str, str]) -> str:
+    """The page's text; `devices` are those of the back ends, by their titles."""
     every_text = "" if every == 1 else f" --every {every}"
     lines = [
         "# Outside suites", "",
@@ -42,9 +52,13 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
             for name, suite in SUITES.items()
             if name in results
         ),
-        "", "FOLDER has each repository under its own name, at that commit.", "",
-        "## Results", "", table(results), "",
+        "", "FOLDER has each repository under its own name, at that commit. One is brought by", "",
+        "```", *brought(results), "```", "",
+        "Suites that FOLDER lacks are left out. The back ends:", "",
+        *(f"- {title}: {device}" for title, device in devices.items()), "",
+        "## All suites", "", totals(results), "",
         *(f"- **{outcome}**: {meaning}." for outcome, meaning in OUTCOMES.items()), "",
+        "## By suite", "", table(results), "",
         "What a case is:", "", *descriptions(results), "",
         "## What is accepted and should not be", "",
         "| class | cases | why |", "|---|---:|---|",
@@ -53,6 +67,20 @@ def page(results: Mapping[str, Sequence[Result]], date: str, every: int) -> str:
         *problems(result for own in results.values() for result in own), "",
     ]  # fmt: skip
     return "\n".join(lines)
+
+
+def brought(names: Iterable[str]) -> list[str]:
+    """The commands for the repository of the first suite."""
+    suite = SUITES[next(iter(names))]
+    name = suite.repository.rpartition("/")[2]
+    folders = dict.fromkeys(
+        folder for other in SUITES.values() if other.repository == suite.repository for folder in other.folders
+    )
+    return [
+        f"git clone --filter=blob:none --sparse https://github.com/{suite.repository} FOLDER/{name}",
+        f"git -C FOLDER/{name} sparse-checkout set {' '.join(folders)}",
+        f"git -C FOLDER/{name} checkout {suite.commit[:12]}",
+    ]
 
 
 def descriptions(names: Iterable[str]) -> list[str]:

@@ -26,7 +26,9 @@ INVERSES = {3: -1431655765, 5: -858993459, 7: -1227133513, 9: 954437177}
 
 
 class KnownAnswer:
-    """Writes one program."""
+    """Writes one program, of integers."""
+
+    type = "ivec4"
 
     def __init__(self, random: Random, number: int) -> None:
         self.random, self.number, self.names = random, number, 0
@@ -40,11 +42,11 @@ class KnownAnswer:
         """The name of the entry, and the text."""
         entry = f"known{self.number}"
         body = self.level("v", self.random.choice((1, 2, 2, 3, 3, 4)))
-        whole = f"ivec4 {entry}(ivec4 given) {{\nivec4 v = given;\n{body}return v;\n}}\n"
+        whole = f"{self.type} {entry}({self.type} given) {{\n{self.type} v = given;\n{body}return v;\n}}\n"
         return entry, "".join(self.functions) + whole
 
     def level(self, v: str, depth: int) -> str:
-        """Statements after which `v`, an ivec4, is what it was."""
+        """Statements after which `v` is what it was."""
         if depth == 0:
             return self.random.choice(("", f"if ({self.false()}) {{ {self.junk(v)} }}\n"))
         encode, decode = self.codec(v)
@@ -113,7 +115,7 @@ class KnownAnswer:
             return f"if ({self.true()} && {function}({v})) {{ }} else {{ {self.junk(v)} }}\n"
         if shape == 13:
             function = self.function("int", v, f"{body}return 0;\n")
-            return f"int {i} = {self.true()} ? {function}({v}) : ({v}.x = 5);\n"
+            return f"int {i} = {self.true()} ? {function}({v}) : int({v}.x = {self.type}(5).x);\n"
         if shape == 14:
             return f"if ({self.false()}) {{ return {v} * 2; }}\n{body}"
         outer = self.name("i")
@@ -125,7 +127,7 @@ class KnownAnswer:
     def function(self, result: str, v: str, body: str) -> str:
         """A function of `v`, whose name it returns."""
         name = self.name("part")
-        self.functions.append(f"{result} {name}(inout ivec4 {v}) {{\n{body}}}\n")
+        self.functions.append(f"{result} {name}(inout {self.type} {v}) {{\n{body}}}\n")
         return name
 
     def outlined(self, v: str, body: str, early: bool) -> str:
@@ -195,3 +197,59 @@ f"{v} |= ivec4({t}) << 31;\n"),
         name = self.name("swap")
         self.functions.append(f"void {name}(inout int a, inout int b) {{ int c = a; a = b; b = c; }}\n")
         return f"{name}({part}, {other});\n", f"{name}({other}, {part});\n"
+
+
+class KnownFloats(KnownAnswer):
+    """Writes one program, of floats that are eighths: every operation is exact."""
+
+    type = "vec4"
+
+    def junk(self, v: str) -> str:
+        part = f"{v}.{self.random.choice('xyzw')}"
+        return self.random.choice((
+            f"{part} = {self.random.randrange(100)}.5;", f"{part}++;", f"{v} = vec4({NONE});", f"{v} = -{v};",
+            f"{v} += {v}.wzyx;", f"{part} /= float({ONE} + 1);", f"{v} *= mat4(2.0);", f"{v} = normalize({v});",
+            f"for (int k = 0; k < {ONE}; k++) {{ {part} += sin(float(k)); }}", f"{v}[{NONE}] = 7.0;",
+        ))  # fmt: skip
+
+    def codec(self, v: str) -> tuple[str, str]:
+        r = self.random
+        part, other = (f"{v}.{letter}" for letter in r.sample("xyzw", 2))
+        number, t, u = 8.0 * r.randrange(-64, 64), self.name(), self.name()
+        order = r.sample(range(4), 4)
+        columns = ", ".join("".join(", 1.0" if row == order[column] else ", 0.0" for row in range(4))[2:]
+                            for column in range(4))  # fmt: skip
+        codecs = [
+            (f"{v} *= 4.0;\n", f"{v} *= 0.25;\n"),
+            (f"{v} = -{v};\n", f"{v} = -{v};\n"),
+            (f"{v} = {v}.wzyx;\n", f"{v}.wzyx = {v};\n"),
+            (f"{part} += {number};\n", f"{part} -= {number};\n"),
+            (f"mat4 {t} = mat4({columns});\n{v} = {t} * {v};\n", f"{v} = {v} * {t};\n"),
+            (f"vec4 {t} = floor({v});\n{v} = fract({v});\n", f"{v} += {t};\n"),
+            (f"float {t};\n{part} = modf({part}, {t});\n", f"{part} = {t} + {part};\n"),
+            (f"int {t};\n{part} = frexp({part}, {t});\n", f"{part} = ldexp({part}, {t});\n"),
+            (f"vec4 {t} = sign({v});\n{v} = abs({v});\n", f"{v} = mix({v}, {v} * {t}, notEqual({t}, vec4(0.0)));\n"),
+            (f"mat4 {t} = outerProduct({v}, vec4(0.0, 1.0, 0.0, 0.0));\n{v} = vec4({ONE});\n", f"{v} = {t}[{ONE}];\n"),
+            (f"mat2x4 {t};\n{t}[{NONE}] = {v};\n{t}[1] = {v}.yxwz;\n{v} = {t}[{ONE}];\n", f"{v} = {v}.yxwz;\n"),
+            (f"float {t} = {part};\n{part} = {other};\n{other} = {t};\n",
+             f"float {u} = {other};\n{other} = {part};\n{part} = {u};\n"),
+            (f"{part} = {part} + {other};\n", f"{part} = {part} - {other};\n"),
+            (f"ivec4 {t} = floatBitsToInt({v});\n{v} = vec4({SWITCHES});\n", f"{v} = intBitsToFloat({t});\n"),
+            (f"vec2 {t}[3] = vec2[3]({v}.xy, vec2(0.0), {v}.zw);\n{v} = vec4(1.0);\n",
+             f"{v} = vec4({t}[{NONE}], {t}[{SWITCHES}.z]);\n"),
+            self.in_struct(v, t),
+        ]  # fmt: skip
+        return r.choice(codecs)
+
+    def in_struct(self, v: str, t: str) -> tuple[str, str]:
+        """Into the matrix of a struct in an array, by a function, and back."""
+        name, function = self.name("Kept"), self.name("keep")
+        self.functions.append(f"struct {name} {{ mat2 both; int place; }};\n")
+        self.functions.append(
+            f"void {function}(out {name} kept[2], vec4 a, int place) {{\n"
+            f"kept[0] = {name}(mat2(a), place);\nkept[place].both = mat2(a);\nkept[1].place = 0;\n}}\n"
+        )
+        return (
+            f"{name} {t}[2];\n{function}({t}, {v}, {ONE});\n{v} = -{v};\n",
+            f"{v} = vec4({t}[{t}[{NONE}].place].both[{NONE}], {t}[1].both[{ONE}]);\n",
+        )

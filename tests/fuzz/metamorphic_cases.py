@@ -13,12 +13,14 @@ import numpy as np
 
 from glsl_batches import LANES, Failure, Runner
 from glsl_batches import TARGETS as TARGETS
-from known_answers import HEAD, SWITCHES, KnownAnswer
-from sssgen.ir.types import BY_NAME, Type, kind_of
+from known_answers import HEAD, SWITCHES, KnownAnswer, KnownFloats
+from sssgen.ir.types import BY_NAME, VEC4, Type, kind_of
 from sssgen.run.backends import Array, Call
 
 TOLERANCE = 1e-3
 """For floats, relative to the larger of their size and 1."""
+FLOATS = 0.4
+"""The share of floats among known answers."""
 IVEC4 = BY_NAME["ivec4"]
 SWITCH_VALUES = np.repeat(np.array([[0], [1], [2], [3]], np.int32), LANES, axis=1)
 EXTREMES = (0, 1, -1, 2, 255, 65535, 65536, (1 << 24) + 1, 0x55555555, 2147483647, -2147483647, -2147483648)
@@ -69,6 +71,10 @@ class KnownCase:
 
 def known_case(random: Random, number: int) -> KnownCase:
     """A program that returns its argument."""
+    if random.random() < FLOATS:
+        entry, text = KnownFloats(random, number).text()
+        eighths = np.array([random.randrange(-512, 513) / 8.0 for _ in range(4 * LANES)]).reshape(4, LANES)
+        return KnownCase("known answer", text, entry, VEC4, {"given": eighths}, eighths)
     entry, text = KnownAnswer(random, number).text()
     numbers = [random.choice(EXTREMES) if random.random() < 0.4 else random.getrandbits(32) for _ in range(4 * LANES)]
     given = (np.array(numbers, np.int64) & 0xFFFFFFFF).astype(np.uint32).view(np.int32).reshape(4, LANES)

@@ -11,6 +11,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Backend
 from sssgen.support.diagnostics import SssgenError
+from whole_shaders import compile_errors
 
 SWITCH = """float f(float x) {
     float result = x;
@@ -72,5 +73,13 @@ def test_the_range_of_depths_is_a_uniform() -> None:
 def test_a_compute_shader_without_the_size_of_its_workgroup() -> None:
     text = "layout(std430) buffer Numbers { float x[]; };\nvoid main() { x[gl_GlobalInvocationID.x] = 1.0; }\n"
     assert load_glsl_text(text, "case.comp").module.workgroup == (1, 1, 1)
-    with pytest.raises(SssgenError, match="belong to compute shaders"):
-        load_glsl_text(text, "case.glsl")
+    with pytest.raises(SssgenError, match="belongs to compute shaders"):
+        load_glsl_text("shared float x[4];\nvoid main() { x[0] = 1.0; }\n", "case.glsl")
+
+
+@pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
+def test_the_number_of_a_sample(target: str) -> None:
+    text = "out vec4 color;\nvoid main() { color = vec4(float(gl_SampleID)); }\n"
+    module = load_glsl_text(text, "case.frag").module
+    emitted = next(iter(transpile(module, target, "case", keep=True).files.values()))
+    assert compile_errors(emitted, target) == []

@@ -114,7 +114,7 @@ def test_each_kind_of_case_has_its_outcome(tmp_path: Path) -> None:
     assert "[[1.5], [12.0]]" in wrong.outcomes["numpy"].why
     text = table({"gles3": [*results, accepted, wrong]})
     assert "| gles3 | values | NumPy | 1 | 1 |" in text
-    assert "| other | 1 |" in page({"gles3": [accepted]}, "2000-01-01", 1)
+    assert "| other | 1 |" in page({"gles3": [accepted]}, "2000-01-01", 1, {})
 
 
 def test_each_class_of_lenience_has_a_reason() -> None:

@@ -365,6 +365,7 @@ def _context(
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,
         "storage_buffers": bool(printer.buffers),
+        "numbers_samples": any(variable.builtin == "gl_SampleID" for variable in program.module.variables),
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 

@@ -15,9 +15,9 @@ from sssgen.targets.frame import Variant
 _Record = TypeVar("_Record", bound=NamedTuple)
 
 STAGE_BUILTINS = (
-    "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_VertexID", "gl_InstanceID", "gl_PointSize",
-    "gl_PointCoord", "gl_GlobalInvocationID", "gl_LocalInvocationID", "gl_WorkGroupID", "gl_NumWorkGroups",
-    "gl_LocalInvocationIndex",
+    "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_SampleID", "gl_VertexID", "gl_InstanceID",
+    "gl_PointSize", "gl_PointCoord", "gl_GlobalInvocationID", "gl_LocalInvocationID", "gl_WorkGroupID",
+    "gl_NumWorkGroups", "gl_LocalInvocationIndex",
 )  # fmt: skip
 """GLSL's variables that a stage of another language may have as inputs and outputs."""
 FACTS = (

@@ -30,6 +30,7 @@ STAGE = {
     "gl_FragDepthEXT": ("float", "sssgen_depth_ext"),
     "gl_Position": ("vec4", "sssgen_position"),
     "gl_PointSize": ("float", "sssgen_point_size"),
+    "gl_SampleID": ("int", "sssgen_sample"),
     "gl_VertexID": ("int", "sssgen_vertex"),
     "gl_InstanceID": ("int", "sssgen_instance"),
     "gl_ViewID_OVR": ("uint", "sssgen_view"),

@@ -12,6 +12,7 @@ BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
     "gl_FragCoord": (VEC4, "in"),
     "gl_FrontFacing": (BOOL, "in"),
     "gl_PointCoord": (VEC2, "in"),
+    "gl_SampleID": (INT, "in"),
     "gl_VertexID": (INT, "in"),
     "gl_VertexIndex": (INT, "in"),
     "gl_InstanceID": (INT, "in"),

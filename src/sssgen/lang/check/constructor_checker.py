@@ -93,6 +93,8 @@ class ConstructorChecker:
         """A constructor of numbers; of a literal, or a value of this type, it is that value."""
         kind, first = kind_of(type_), values[0].type
         if isinstance(type_, Scalar) and isinstance(values[0], ir.Literal):
+            if self.context.plain and not _fits(values[0], type_):  # GLSL leaves it undefined
+                return Typed(ir.Construct(type_, values, span), quantity)
             return Typed(self.literal(values[0], type_, span), quantity)
         if isinstance(first, Vector) and len(values) == 1 and components(first) > components(type_):
             letters = "xyzw"[: components(type_)]
@@ -141,8 +143,7 @@ class ConstructorChecker:
 
     def literal(self, literal: ir.Literal, type_: Scalar, span: ir.Span) -> ir.Literal:
         """A literal converted by a constructor. Reports a float that no int or uint can hold."""
-        low, high = (0, 2**32) if type_ == UINT else (-(2**31), 2**31)
-        if literal.type == FLOAT and kind_of(type_) in ("int", "uint") and not low <= int(literal.value) < high:
+        if not _fits(literal, type_):
             raise self.context.fail(span, f"{literal.value:g} does not fit in {a_type(type_)}")
         return literal_as(literal._replace(span=span), type_)
 
@@ -176,6 +177,12 @@ class ConstructorChecker:
         if count != components(type_):
             return f"{name}(…) takes {components(type_)} components, but gets {count}"
         return ""
+
+
+def _fits(literal: ir.Literal, type_: Scalar) -> bool:
+    """Whether a literal that is a float is in the range of a type."""
+    low, high = (0, 2**32) if type_ == UINT else (-(2**31), 2**31)
+    return literal.type != FLOAT or type_.kind not in ("int", "uint") or low <= int(literal.value) < high
 
 
 def _part_types(type_: Array | Struct) -> list[Type]:

@@ -155,7 +155,8 @@ class Texture:
             low = [np.floor(c * n - 0.5) for c, n in zip(coord, self.size(), strict=True)]
         read = _Read(layer, offset, reference)
         corners = [self._corner(0, low, corner, face, read) for corner in ((0, 1), (1, 1), (1, 0), (0, 0))]
-        return np.stack([texels[channel] for texels in corners]).astype(coord.dtype)
+        gathered = np.stack([texels[channel] for texels in corners])
+        return gathered if gathered.dtype.kind in "iu" else gathered.astype(coord.dtype)  # integers stay so
 
     def fetch(self, place: Array, level: int = 0) -> Array:
         """The texels, (4, n), at integer places (2, n) or (3, n), one more for a layer; 0 outside of what exists."""

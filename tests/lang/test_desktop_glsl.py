@@ -1,0 +1,123 @@
+"""GLSL as Vulkan's and OpenGL's shaders use it: blocks, buffers, separate textures, sizes of workgroups."""
+
+from __future__ import annotations
+
+import pytest
+
+from qualification.suites.compiled_texts import complaint
+from sssgen.ir.nodes import Module
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.compiler import Compiled, transpile
+from sssgen.pipeline.two_stages import Source, transpile_stages
+from sssgen.support.diagnostics import SssgenError
+
+BUFFERS = """#version 450
+layout(location = 0) out vec4 color;
+layout(std430, binding = 3) readonly buffer Points { uint count; vec4 points[]; } cloud;
+layout(std430, binding = 4) buffer Hits { uint hits[]; };
+void main() {
+    vec4 sum = vec4(0.0);
+    for (uint i = 0u; i < cloud.count; i++) { sum += cloud.points[i % uint(cloud.points.length())]; }
+    atomicAdd(hits[int(sum.x)], 1u);
+    color = sum;
+}
+"""
+SEPARATE = """#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+layout(set = 0, binding = 0) uniform texture2D image;
+layout(set = 0, binding = 1) uniform sampler reads;
+layout(set = 0, binding = 2) uniform texture2D depths;
+layout(set = 0, binding = 3) uniform samplerShadow compares;
+layout(set = 0, binding = 4) uniform texture2DArray layers[2];
+vec4 twice(texture2D t, sampler s, vec2 at) { return 2.0 * texture(sampler2D(t, s), at); }
+void main() {
+    color = twice(image, reads, uv) + texture(sampler2D(image, reads), uv) + texelFetch(image, ivec2(0), 0);
+    color.x += texture(sampler2DShadow(depths, compares), vec3(uv, 0.5));
+    color.y += texture(sampler2DArray(layers[1], reads), vec3(uv, 1.0)).x;
+}
+"""
+
+
+def load(text: str, label: str) -> Module:
+    return load_glsl_text(text, label).module
+
+
+def emitted(text: str, label: str, target: str) -> Compiled:
+    return transpile(load(text, label), target, "shader", keep=True)
+
+
+def first(compiled: Compiled) -> str:
+    return next(iter(compiled.files.values()))
+
+
+def test_members_of_a_block_take_the_locations_after_its_own() -> None:
+    text = (
+        "#version 450\nlayout(location = 2) out Vertex {\n"
+        "    vec3 a; mat2 b; layout(location = 9) float c; vec2 d[2];\n} v;\n"
+        "void main() { v.a = vec3(1.0); gl_Position = vec4(0.0); }\n"
+    )
+    places = {variable.name: variable.location for variable in load(text, "block.vert").variables}
+    assert places == {"Vertex_a": 2, "Vertex_b": 3, "Vertex_c": 9, "Vertex_d": 10, "gl_Position": -1}
+
+
+@pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
+def test_a_fragment_shader_has_storage_buffers(target: str) -> None:
+    pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
+    compiled = emitted(BUFFERS, "buffers.frag", target)
+    assert not complaint(compiled.files)
+    assert [buffer["block"] for buffer in compiled.reflection["storage_buffers"]] == ["Points", "Hits"]
+    assert "workgroup_size" not in compiled.reflection
+
+
+def test_a_vertex_shader_of_wgsl_reads_storage_buffers_alone() -> None:
+    text = BUFFERS.replace("layout(location = 0) out vec4 color;", "").replace("color =", "gl_Position =")
+    reading = text.replace("atomicAdd(hits[int(sum.x)], 1u);", "sum.x += float(hits[0]);")
+    assert "var<storage, read> hits_buffer" in first(emitted(reading, "buffers.vert", "wgsl"))
+    with pytest.raises(SssgenError, match="cannot write the storage buffer 'hits_buffer'"):
+        emitted(text, "buffers.vert", "wgsl")
+    assert "InterlockedAdd" in first(emitted(text, "buffers.vert", "hlsl"))
+
+
+def test_what_has_no_storage_buffers() -> None:
+    for target in ("glsl-es-300", "numpy"):
+        with pytest.raises(SssgenError, match="'cloud' is a storage buffer, which this target lacks"):
+            emitted(BUFFERS, "buffers.frag", target)
+    with pytest.raises(SssgenError, match="a shader with memory takes no guards"):
+        transpile(load(BUFFERS, "buffers.frag"), "wgsl", "shader", "all")
+    vertex = load("#version 450\nvoid main() { gl_Position = vec4(0.0); }\n", "a.vert")
+    with pytest.raises(SssgenError, match="translated one by one"):
+        transpile_stages(Source(vertex), Source(load(BUFFERS, "buffers.frag")), "wgsl", "program")
+
+
+def test_separate_textures_are_one_with_their_samplers() -> None:
+    module = load(SEPARATE, "separate.frag")
+    assert [uniform.name for uniform in module.uniforms] == ["image", "depths", "layers_0", "layers_1"]
+    text = first(transpile(module, "glsl-330", "shader", keep=True))
+    assert "uniform sampler2DShadow depths;" in text and "vec4 twice(sampler2D t, vec2 at)" in text
+    assert "twice(image, uv) + texture(image, uv) + texelFetch(image, ivec2(0), 0)" in text
+    pytest.importorskip("wgpu", reason="wgpu is missing: pip install -e '.[webgpu]'")
+    for target in ("wgsl", "hlsl"):
+        assert not complaint(transpile(module, target, "shader", keep=True).files)
+
+
+def test_sizes_of_workgroups() -> None:
+    body = "layout(push_constant, std430) uniform Push { uint by[3]; } push;\nvoid main() { memoryBarrierImage(); }\n"
+    assert load("#version 450\n" + body, "a.comp").workgroup == (1, 1, 1)
+    assert load("#version 450\nlayout(local_size_x_id = 3, local_size_y = 2) in;\n" + body, "a.glsl").workgroup == (
+        1,
+        2,
+        1,
+    )
+    used = "#version 450\nbuffer A { uint a[]; };\nvoid main() { a[gl_LocalInvocationIndex] = gl_WorkGroupID.x; }\n"
+    assert load(used, "a.glsl").workgroup == (1, 1, 1)
+
+
+def test_an_atomic_of_a_component_beside_a_copied_array() -> None:
+    text = (
+        "#version 450\nlayout(local_size_x = 1) in;\nstruct Ray { float far; };\n"
+        "buffer A { uvec2 pair; Ray first; Ray rays[]; } a;\n"
+        "void main() { atomicAdd(a.pair.y, 1u); a.first = a.rays[1]; }\n"
+    )
+    with pytest.raises(SssgenError, match="works on a component of a vector"):
+        emitted(text, "a.comp", "wgsl")
