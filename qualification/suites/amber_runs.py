@@ -15,7 +15,7 @@ from qualification.suites.amber_cases import ASSEMBLY, PUSH, Case, Expectation, 
 from qualification.suites.compiled_texts import judgement
 from qualification.suites.machines import drawing_machines
 from qualification.suites.outcomes import FRONT, SKIPPED, Outcome, Result
-from qualification.suites.picture_outcomes import NUMPY, TARGETS, Drawn, colors, outcomes
+from qualification.suites.picture_outcomes import Drawn, colors, outcomes
 from qualification.suites.pictures import Mesh, PictureProgram, draw_written, of_fragment
 from sssgen.run.backends import Array
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -44,7 +44,7 @@ def run_case(case: Case) -> Result:
     for pipeline in case.pipelines:
         program = program_of(pipeline, case.buffers, textures)
         if pipeline.target in bound:
-            picture = draw_written(program, drawing_machines(*TARGETS, NUMPY)["gl"])
+            picture = draw_written(program, drawing_machines()["gl"])
             textures[pipeline.target] = Texture(colors(picture) / 255.0, "nearest")
         else:
             programs[pipeline.target] = program

@@ -50,7 +50,7 @@ Judge: TypeAlias = Callable[[Buffers, Buffers | None], str]
 
 def outcomes(program: ComputeProgram, judge: Judge) -> dict[str, Outcome]:
     """The outcomes of a program, on the driver as written and on each back end as translated."""
-    running = drawing_machines(*TARGETS)
+    running = drawing_machines()
     try:
         module = load_glsl_text(program.text, "case.comp").module
     except SssgenError as error:

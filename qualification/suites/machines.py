@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from contextlib import ExitStack
 
+from sssgen.analyse.verify.machines import SECONDS as VALUES_SECONDS
 from sssgen.analyse.verify.machines import Machines, start_machines
 from sssgen.run.backends.backend_process import BackendProcess
 
@@ -21,10 +22,21 @@ SECONDS = 12.0
 _open = ExitStack()
 
 
-@functools.cache
 def machines() -> Machines:
     """The back ends of this process, which end with it."""
-    return _open.enter_context(start_machines(tuple(BACKENDS)))
+    return _with_limit(VALUES_SECONDS)
+
+
+def drawing_machines() -> dict[str, BackendProcess]:
+    """The same for pictures, without those that this machine lacks."""
+    return _with_limit(SECONDS).running
+
+
+def _with_limit(seconds: float) -> Machines:
+    started = _started()
+    for machine in started.running.values():
+        machine.limit_time(seconds)
+    return started
 
 
 def devices() -> dict[str, str]:
@@ -33,9 +45,5 @@ def devices() -> dict[str, str]:
 
 
 @functools.cache
-def drawing_machines(*names: str) -> dict[str, BackendProcess]:
-    """The back ends of this process for pictures, without those that this machine lacks."""
-    running = _open.enter_context(start_machines(names)).running
-    for machine in running.values():
-        machine.limit_time(SECONDS)
-    return running
+def _started() -> Machines:
+    return _open.enter_context(start_machines(tuple(BACKENDS)))

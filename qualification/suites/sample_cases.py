@@ -14,7 +14,7 @@ from qualification.suites import compute_runs
 from qualification.suites.machines import AUTHOR, drawing_machines
 from qualification.suites.outcomes import RIGHT, SKIPPED, WRONG, Outcome, Result
 from qualification.suites.picture_functions import PixelFunction
-from qualification.suites.picture_outcomes import NUMPY, TARGETS, Drawn, colors, outcomes
+from qualification.suites.picture_outcomes import NUMPY, Drawn, colors, outcomes
 from qualification.suites.pictures import PictureProgram, Translations, of_fragment, places
 from sssgen.run.backends import Array
 from sssgen.support.diagnostics import SssgenError
@@ -91,7 +91,7 @@ def run_case(case: SampleCase) -> Result:
     results = outcomes([program], lambda drawn, expected: difference(drawn, expected, stable))
     if all(results.get(name, Outcome(RIGHT)).outcome == WRONG for name in ("webgpu", NUMPY)):
         # two that share nothing are against the driver: NumPy decides
-        pixels = PixelFunction(Translations(program), drawing_machines(*TARGETS, NUMPY)).picture(NUMPY)
+        pixels = PixelFunction(Translations(program), drawing_machines()).picture(NUMPY)
         oracle = Drawn([pixels], places(SIZE))
         results = outcomes([program], lambda drawn, _: difference(drawn, oracle, stable))
     if results.get(AUTHOR, Outcome(WRONG)).outcome == SKIPPED:

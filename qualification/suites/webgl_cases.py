@@ -73,7 +73,7 @@ def page_cases(page: str, name: str) -> Iterator[WebglCase]:
     for vertex, fragment in dict.fromkeys(seen):
         texts = shaders[vertex], shaders[fragment]
         if _version(texts[0]) == _version(texts[1]) == "300" and "$(" not in "".join(texts):
-            yield TextCase(f"{name}#{vertex},{fragment}", "shader.frag", texts[1], texts[0], judged=False)
+            yield TextCase(f"{name}#{vertex},{fragment}", "shader.frag", texts[1].lstrip(), texts[0].lstrip())
 
 
 def _tested(shaders: Mapping[str, str], code: str, name: str) -> Iterator[WebglCase]:
@@ -150,7 +150,7 @@ def _with_default(vertex: str, fragment: str) -> tuple[str, str]:
 
 def with_version(text: str) -> str:
     """A text with its version, which is 1.00 in WebGL where it says nothing."""
-    return text.lstrip() if re.match(r"\s*#\s*version", text) or not text.strip() else f"#version 100\n{text}"
+    return text if re.match(r"\s*#\s*version", text) or not text.strip() else f"#version 100\n{text}"
 
 
 def ogles_cases(path: Path, name: str) -> Iterator[WebglCase]:
