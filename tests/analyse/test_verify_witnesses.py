@@ -104,11 +104,27 @@ def test_what_the_front_end_misreads_is_no_fault_of_the_driver(machines: Machine
     assert report.driver_findings == []
 
 
+def test_a_driver_that_misreads_two_texts_is_at_fault(machines: Machines, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Then the interpreter says whether sssgen and glslang read the text alike."""
+    with monkeypatch.context() as patch:
+        patch.setattr("sssgen.analyse.verify.driven_function.draw_reread", _wrong)
+        (row,) = report_of(machines, gl=partial(Faulty, draws=True)).rows
+    assert row.ok and row.finding is not None and row.finding.driver
+    assert row.finding.evidence == "as does the interpreter with glslang's reading of the text"
+
+
+def _wrong(backend: Any, drawing: Drawing) -> Array:
+    picture: Array = np.array(backend.draw(drawing))
+    picture[0, 0] = np.float32(WRONG).view(np.uint32)
+    return picture
+
+
 def test_without_a_second_reader_the_driver_is_not_blamed(machines: Machines, monkeypatch: pytest.MonkeyPatch) -> None:
     """The translations share one front end, which may be at fault."""
     faulty = partial(Faulty, draws=True)
     with monkeypatch.context() as patch:
         patch.setattr("sssgen.analyse.verify.driven_function.draw_reread", _missing)
+        patch.setattr("sssgen.analyse.verify.verified_function.reread", _missing)
         report = report_of(machines, gl=faulty)
     assert not report.ok and report.rows[0].finding is not None and not report.rows[0].finding.driver
 

@@ -24,8 +24,10 @@ from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
-from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.backends import Backend, Call, Text, call_program
 from sssgen.run.backends.backend_process import BackendProcess
+from sssgen.run.backends.glsl_reread import reread, run_reread
+from sssgen.run.backends.opengl import HEADS
 from sssgen.run.compilers import CompilerMissing
 from sssgen.support.diagnostics import SssgenError
 
@@ -215,6 +217,7 @@ class Runner:
         - Vulkan computes all lanes right from the SPIR-V that the same compiler makes of the same HLSL. So the compiler
           reads the text as it is meant, and what remains of the first way is at fault: spirv-cross, or OpenGL's GLSL.
           Another compiler of HLSL would show less: where the language leaves an order open, each may take its own.
+        - GLSL is right in the same driver, or in NumPy, as glslang reads it: from what spirv-cross makes of its SPIR-V.
         """
         if target == "numpy":
             return ""
@@ -222,6 +225,8 @@ class Runner:
             return "divergent lanes"
         if target == "hlsl" and self.is_right_in_vulkan(module, cases, index):
             return "right in Vulkan"
+        if target in ("gl", "gl-es") and self.is_right_reread(target, module, cases, index):
+            return "right as glslang reads it"
         return ""
 
     def is_right_in_vulkan(self, module: Module, cases: Sequence[Case], index: int) -> bool:
@@ -229,6 +234,21 @@ class Runner:
         try:
             return not cases[index].wrong_lanes(self.results(VULKAN, module, cases)[index])
         except (SssgenError, CompilerMissing):
+            return False
+
+    def is_right_reread(self, target: str, module: Module, cases: Sequence[Case], index: int) -> bool:
+        """Whether a text of GLSL is right as glslang reads it: in OpenGL, or for NumPy."""
+        case = cases[index]
+        text, calls = self.emitted(target, module, [case])
+        backend = self.backend(target)
+        assert isinstance(backend, BackendProcess)
+        try:
+            if not case.wrong_lanes(backend.apply(run_reread, text, calls)[0]):
+                return True
+            drawing, _ = call_program.drawing(backend.target, text, calls, {})
+            again = load_glsl_text(reread(HEADS[backend.target.name] + drawing.fragment.text.text), "reread.glsl")
+            return not case.wrong_lanes(self.results("numpy", again.module, [case])[0])
+        except (SssgenError, CompilerMissing, ValueError, KeyError):
             return False
 
     def is_wrong_alone(self, target: str, module: Module, cases: Sequence[Case], index: int, lane: int) -> bool:
@@ -239,9 +259,17 @@ class Runner:
         self, target: str, module: Module, cases: Sequence[Case], lane: int | None = None
     ) -> list[np.ndarray[Any, Any]]:
         """The results of the cases in one text; with `lane`, all lanes have its arguments."""
-        backend = self.backend(target)
         if target == "numpy" and any(case.program.has_state for case in cases) and len(cases) > 1:
             return [self.results(target, module, [case])[0] for case in cases]
+        text, calls = self.emitted(target, module, cases)
+        if lane is not None:
+            calls = [call._replace(args=tuple([_of_lane(arg, lane) for arg in call.args])) for call in calls]
+        results: list[np.ndarray[Any, Any]] = self.timed(f"run {target}", self.backend(target).run, text, calls)
+        return results
+
+    def emitted(self, target: str, module: Module, cases: Sequence[Case]) -> tuple[Text, list[Call]]:
+        """The text of a target, and the calls of its functions."""
+        backend = self.backend(target)
         keys = {function.name: function.key for function in module.functions}
         called = [keys[case.program.entry] for case in cases]
         module = keep_reachable(module, called)
@@ -253,11 +281,7 @@ class Runner:
         )
         text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
         renames = compiled.reflection["renames"]
-        calls = [self.call(case, closed[case.program.entry], renames) for case in cases]
-        if lane is not None:
-            calls = [call._replace(args=tuple([_of_lane(arg, lane) for arg in call.args])) for call in calls]
-        results: list[np.ndarray[Any, Any]] = self.timed(f"run {target}", backend.run, Text(text), calls)
-        return results
+        return Text(text), [self.call(case, closed[case.program.entry], renames) for case in cases]
 
     def call(self, case: Case, params: Sequence[Any], renames: dict[str, str]) -> Call:
         args = [lanes_last(type_, lanes) for type_, lanes in zip(INPUTS, arguments(), strict=True)]

@@ -13,6 +13,9 @@ CASES = {
     "a bound that reads the counter": ("float f(float x) { for (int i = 0; i < 5 - i; i++) x += 1.0; return x; }", 4.0),
     "a bound that is the counter": ("float f(float x) { for (int h = 0; h < h; h++) x += 1.0; return x; }", 1.0),
     "a builtin after a return": ("float f(float x) { return x; x -= fma(x, 2.0, 1.0); }", 1.0),
+    "an end that is never reached": (
+        "float f(float x) { if (x > 0.5) { return x; } else { return 2.0; } if (x == 2.0) { } }", 1.0,
+    ),
     "a builtin after a break": ("float f(float x) { while (true) { x++; break; x = fma(x, x, x); } return x; }", 2.0),
     "a builtin that is never reached": ("float f(float x) { if (true) return x; return fma(x, 2.0, 1.0); }", 1.0),
     "a list in order": ("float f(float x) { float a[2] = {x, x++}; return a[0] * 10.0 + x; }", 12.0),

@@ -69,6 +69,8 @@ class DrivenFunction:
     ) -> None:
         self.case, self.written, self.machines = case, written, machines
         self.texts: dict[str, list[_Translation]] = {}
+        self.fragment = ""
+        """The author's text as the driver has it, with a main that calls the probes; '' before the first run."""
         names = {probe.name for probe in case.probes}
         self.keys = {function.name: function.key for function in module.functions if function.name in names}
         self.written_names = {function.name for function in module.functions if function.name not in names}
@@ -139,6 +141,7 @@ class DrivenFunction:
         vertex = Stage(Text(f"#version {version}\n{_SCREEN}"))
         drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
         gl = self.machines["gl"]
+        self.fragment = drawing.fragment.text.text
         return calls.results(probe_calls, layout, gl.apply(draw_reread, drawing) if reread else gl.draw(drawing))
 
     def run_translation(self, backend: str, inputs: Inputs) -> list[Array]:

@@ -33,11 +33,15 @@ from sssgen.analyse.verify.verification_report import (
 from sssgen.analyse.verify.witnesses import ORACLE, Dispute, Second, Verdict, judge
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Sampler, spell, with_article
+from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.prune import prune
+from sssgen.passes.reachable import keep_reachable
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_process import BackendProcess
+from sssgen.run.backends.glsl_reread import reread
+from sssgen.run.compilers import CompilerMissing
 from sssgen.run.evaluate.deviation import GOAL, errors
-from sssgen.support.diagnostics import SssgenError
+from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SAMPLES = 1000
@@ -98,6 +102,8 @@ class Case(DrivenFunction):
         """Why it has fewer inputs than were asked for; '' where it has not."""
         self.rounding = {granted: RoundingLimits(partial(self.noise, granted=granted)) for granted in (False, True)}
         self.inputs: list[Inputs] = []
+        self.reread_outputs: dict[str, Array] | None = None
+        """The interpreter's outputs of the text that glslang reads; None before they are asked for."""
         self.unread = ""
         """Why its textures cannot be drawn; '' where they can."""
         if case.probes:
@@ -315,17 +321,35 @@ class Case(DrivenFunction):
                 *again,
                 second("as does glslang's reading where all lanes have these inputs", True, True),
             ]
+        again.append(Second("as does the interpreter with glslang's reading of the text", self.reread_lane))
         try:
-            return judge(Dispute(original, self.interpretation(), ran[ORACLE], ran, unexplained, agree), again)
+            return judge(
+                Dispute(original, self.interpretation(self.program, self.keys), ran[ORACLE], ran, unexplained, agree),
+                again,
+            )
         except TimeOverError:
             return nobody
 
-    def interpretation(self) -> dict[str, Array]:
+    def reread_lane(self, lane: int) -> dict[str, Array]:
+        """The interpreter's outputs of a lane, of the text that glslang reads. Raises SssgenError."""
+        if self.reread_outputs is None:
+            try:
+                module = load_glsl_text(reread(self.fragment), "reread.glsl").module
+            except (ValueError, CompilerMissing) as error:
+                raise failure(f"glslang: {error}") from None
+            keys = {function.name: function.key for function in module.functions}
+            if lacking := [probe.name for probe in self.case.probes if probe.name not in keys]:
+                raise failure(f"glslang's reading lacks {lacking[0]}")
+            program = Program(keep_reachable(module, [keys[probe.name] for probe in self.case.probes]))
+            self.reread_outputs = self.interpretation(program, keys)
+        return {output: value[lane] for output, value in self.reread_outputs.items()}
+
+    def interpretation(self, program: Program, keys: Mapping[str, str]) -> dict[str, Array]:
         """The results of the interpreter for each output, lanes first."""
 
         def result(inputs: Inputs, probe: str) -> Array:
             everything = {**inputs.values, **inputs.textures}
-            value = Run(self.program, inputs.lanes, everything).result(self.keys[probe], everything)
+            value = Run(program, inputs.lanes, everything).result(keys[probe], everything)
             return np.moveaxis(value, -1, 0)
 
         return {

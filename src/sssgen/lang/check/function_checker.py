@@ -52,8 +52,10 @@ class FunctionChecker:
         if context.plain and context.es < 300:
             context.function.scopes.push()  # older GLSL lets a variable hide a parameter
         body = self.statements.statements(function.body.statements)
-        if result != VOID and context.plain and not returns(body):
-            body = (*body, ir.Return(zero(result, name.span), name.span))  # GLSL leaves this value undefined
+        reaches_end = not returns(body)
+        if result != VOID and not returns(body[-1:]) and (context.plain or not reaches_end):
+            # GLSL leaves this value undefined; naga asks for it also where what returned is not the last statement
+            body = (*body, ir.Return(zero(result, name.span), name.span))
         is_correct = len(context.reporter.diagnostics) == errors and not context.function.has_faults
         if result != VOID and not returns(body) and is_correct:
             message = f"{name.text} can end without returning {a_type(result)}"

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.run.backends.backend_interface import ATTRIBUTES, Drawing, Stage, Text, refusal
-from sssgen.run.backends.opengl import _HEADS, _SCREEN, OpenGL
+from sssgen.run.backends.opengl import _SCREEN, HEADS, OpenGL
 from sssgen.run.backends.spirv_rewriting import rewrite
 from sssgen.run.compilers import CompilerMissing, Message, dxc, glslang
 
@@ -40,7 +40,7 @@ class HLSL(OpenGL):
 
     def stages(self, drawing: Drawing) -> tuple[str, str]:
         fragment = self.glsl(drawing.fragment, "fragment")
-        return self.glsl(drawing.vertex, "vertex") if drawing.vertex else _HEADS["glsl-330"] + _SCREEN, fragment
+        return self.glsl(drawing.vertex, "vertex") if drawing.vertex else HEADS["glsl-330"] + _SCREEN, fragment
 
     def glsl(self, stage: Stage, kind: str) -> str:
         """A stage as GLSL."""

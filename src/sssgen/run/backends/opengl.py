@@ -26,7 +26,7 @@ from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.compilers.gl_driver import DriverGL, messages
 from sssgen.targets.runtime.numpy_textures import Texture
 
-_HEADS = {
+HEADS = {
     "glsl-330": "#version 330 core\n#line 1\n",
     "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\n"
     "precision highp sampler2D;\nprecision highp sampler3D;\nprecision highp samplerCube;\n"
@@ -73,7 +73,7 @@ class OpenGL(DrawingBackend):
 
     def stages(self, drawing: Drawing) -> tuple[str, str]:
         """The GLSL of the two stages."""
-        head = _HEADS[self.target.name]
+        head = HEADS[self.target.name]
         fragment = drawing.fragment.text.text
         fragment = fragment if fragment.startswith("#version") else head + fragment
         vertex = drawing.vertex.text.text if drawing.vertex else head + _SCREEN
