@@ -16,6 +16,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backend_registry import BACKENDS, SINGLE
 from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
 LOWEST, HIGHEST, MOST = -(2**31), 2**31 - 1, 2**32 - 1
@@ -155,8 +156,13 @@ UNDEFINED = [
 
 
 @pytest.mark.parametrize(("text", "message"), UNDEFINED)
-def test_constants_without_a_value_are_errors_where_the_target_refuses_them(text: str, message: str) -> None:
+def test_constants_without_a_value_are_numbers_where_the_target_refuses_them(
+    text: str, message: str, assert_compiles: Callable[[Source], None]
+) -> None:
     module = load_glsl_text(text, "case.glsl").module
+    compiled = transpile(module, "wgsl", "case", "none", keep=True)
+    assert message in compiled.warnings[0].message
+    assert_compiles(Source(next(iter(compiled.files.values())), "wgsl", "library", name="case"))
+    assert not transpile(module, "hlsl", "case", "none", keep=True).warnings
     with pytest.raises(SssgenError, match=message):
-        transpile(module, "wgsl", "case", "none", keep=True)
-    transpile(module, "hlsl", "case", "none", keep=True)
+        transpile(module, "wgsl", "case", "none")
