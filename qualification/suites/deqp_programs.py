@@ -49,7 +49,9 @@ def stage_text(case: Case, stage: str) -> str:
             flat = "flat " if fragment and not is_old and value.type[0] in "iu" else ""
             lines.append(f"{flat}{inputs} {value.type} {value.name};")
         elif value.kind == "output":
-            lines.append(f"{outputs} {value.type} {value.name};".strip())
+            # a fragment shader has no matrices as outputs
+            word = "" if fragment and value.type.startswith("mat") else outputs
+            lines.append(f"{word} {value.type} {value.name};".strip())
         elif _lacks(text, value):
             lines.append(f"uniform {value.type} {value.name};")
     declarations = "\n".join(lines)

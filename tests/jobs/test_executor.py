@@ -307,3 +307,15 @@ def test_the_command_distributes_its_items(capsys: pytest.CaptureFixture[str]) -
     assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
     assert cli.main([*command, "--processes", "0"]) == 2
     assert "'0' is not a number of processes" in capsys.readouterr().err
+
+
+def test_the_stamp_is_of_the_whole_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a module imports from its own package changes the results, too."""
+    package = tmp_path / "stamped"
+    package.mkdir()
+    for name in ("__init__", "runs", "texts"):
+        (package / f"{name}.py").write_text("VALUE = 1\n", "utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    before = work.code_stamp.__wrapped__("stamped.runs")
+    (package / "texts.py").write_text("VALUE = 2\n", "utf-8")
+    assert work.code_stamp.__wrapped__("stamped.runs") != before

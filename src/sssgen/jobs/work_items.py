@@ -6,6 +6,7 @@ Equal arguments must give equal results everywhere, so they include seeds and th
 from __future__ import annotations
 
 import functools
+import glob
 import importlib
 import importlib.util
 import os
@@ -88,13 +89,15 @@ def execute(task: Task) -> bytes:
 @functools.cache
 def code_stamp(module: str) -> str:
     """A digest of the code, the same on every machine: of sssgen's files, of the module's file if it is not part of
-    sssgen, and of the versions of Python and NumPy.
+    sssgen, with the files of its package, and of the versions of Python and NumPy.
     """
     parts = [b"Python %d.%d" % sys.version_info[:2], _numpy_version().encode(), _package_digest().encode()]
     if not module.startswith("sssgen."):
         spec = importlib.util.find_spec(module)
         if spec is not None and spec.origin is not None:
-            parts.append(_content(spec.origin))
+            folder = os.path.dirname(spec.origin)
+            files = sorted(glob.glob(os.path.join(folder, "*.py"))) if spec.parent else [spec.origin]
+            parts += map(_content, files)
     return cache.digest(b"\0".join(parts))
 
 
