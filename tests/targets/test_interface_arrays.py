@@ -30,6 +30,14 @@ void main() {
     put(n);
 }
 """
+COMPONENTS = """#version 330
+out vec4 color;
+uniform int n;
+void main() {
+    color = vec4(0.0);
+    for (int i = 0; i < n; i++) color[i & 3] += 0.25;
+}
+"""
 LIGHTS = """#version 330
 struct Fall { float near; vec2 steps[2]; };
 struct Light { vec3 color; Fall fall; };
@@ -53,6 +61,7 @@ void main() {
 STAGES: dict[str, tuple[str, Stage]] = {
     "attributes": (ATTRIBUTES, "vertex"),
     "outputs": (OUTPUTS, "fragment"),
+    "components": (COMPONENTS, "fragment"),
     "lights": (LIGHTS, "fragment"),
     "integers": (INTEGERS, "vertex"),
 }

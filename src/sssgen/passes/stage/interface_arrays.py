@@ -1,5 +1,5 @@
 """Replaces arrays of a stage's interface that a target cannot have: GLSL ES 3.00 has no attributes that are arrays, and
-takes only constant indices into the outputs of a fragment shader.
+takes only constant indices into the outputs of a fragment shader, of arrays and of vectors.
 
 Each element of an attribute becomes an attribute, `p[2]` becomes `p_0` and `p_1`, and main() begins with a copy of them
 into a variable. An output with other indices is a variable that main() copies to the output at its ends. Place: before
@@ -24,9 +24,8 @@ def interface_arrays(module: ir.Module, kind: str, entry: str, can: Capabilities
         attributes = [each for each in module.variables if each.storage == "in" and isinstance(each.type, Array)]
         return _with_single_attributes(module, attributes, entry) if attributes else module
     if kind == "fragment" and not can.dynamic_outputs:
-        outputs = [each for each in module.variables if each.storage == "out" and isinstance(each.type, Array)]
         indexed = set(_varying_indices(module))
-        outputs = [each for each in outputs if each.name in indexed]
+        outputs = [each for each in module.variables if each.storage == "out" and each.name in indexed]
         return _with_copied_outputs(module, outputs, entry) if outputs else module
     return module
 
@@ -65,10 +64,9 @@ def _with_copied_outputs(module: ir.Module, outputs: list[ir.Variable], entry: s
     module = rewrite_module(module, change)
     copies = tuple(
         [
-            _copy(_element(output, output.name, number), _element(output, names[output.name], number))
+            _copy(part, copied)
             for output in outputs
-            if isinstance(output.type, Array)
-            for number in range(output.type.length)
+            for part, copied in zip(_parts(output, output.name), _parts(output, names[output.name]), strict=True)
         ]
     )
 
@@ -91,13 +89,24 @@ def _with_copied_outputs(module: ir.Module, outputs: list[ir.Variable], entry: s
 
 
 def _varying_indices(module: ir.Module) -> Iterator[str]:
-    """The names of variables that are read or written as a whole, or through an index that is not constant."""
+    """The names of variables with an index that is not constant, and of arrays that are read or written as a whole."""
     for function in module.functions:
         for expr in all_expressions(function.body or ()):
             for part in operands(expr):
-                is_constant = isinstance(expr, ir.Index) and isinstance(expr.index, ir.Literal)
-                if isinstance(part, ir.Global) and not is_constant:
+                if not isinstance(part, ir.Global):
+                    continue
+                if isinstance(expr, ir.Index) and part is expr.value:
+                    if not isinstance(expr.index, ir.Literal):
+                        yield part.name
+                elif isinstance(part.type, Array):
                     yield part.name
+
+
+def _parts(output: ir.Variable, name: str) -> list[ir.Expr]:
+    """The elements of an output, or of its copy with another name; a vector as a whole."""
+    if isinstance(output.type, Array):
+        return [_element(output, name, number) for number in range(output.type.length)]
+    return [ir.Global(output.type, name, output.span)]
 
 
 def _element(variable: ir.Variable, name: str, number: int) -> ir.Index:
