@@ -349,7 +349,10 @@ class Case(DrivenFunction):
 
         def result(inputs: Inputs, probe: str) -> Array:
             everything = {**inputs.values, **inputs.textures}
-            value = Run(program, inputs.lanes, everything).result(keys[probe], everything)
+            # spirv-cross may rename parameters
+            params, written = program.functions[keys[probe]].params, self.program.functions[self.keys[probe]].params
+            arguments = {new.name: everything[old.name] for new, old in zip(params, written, strict=True)}
+            value = Run(program, inputs.lanes, everything).result(keys[probe], arguments)
             return np.moveaxis(value, -1, 0)
 
         return {
