@@ -90,10 +90,10 @@ class Capabilities(NamedTuple):
     """Atomics work on any int or uint in memory; if not, their memory has a type of its own, which is not copied."""
     pointers: bool = False
     """Pointers stand for `out_parameters`; without both a function returns a struct of its results."""
-    storage_buffers: bool = False
-    """There are storage buffers."""
     std140_buffers: bool = False
     """A storage buffer may have the layout std140 where that is not std430."""
+    storage_buffers: bool = False
+    """There are storage buffers."""
     struct_choices: bool = False
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False
