@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from qualification.suites.lenience import LENIENCE, class_of
 from qualification.suites.machines import AUTHOR, BACKENDS
-from qualification.suites.outcomes import ACCEPTED, FRONT, OUTCOMES, RIGHT, SKIPPED, Result
+from qualification.suites.outcomes import ACCEPTED, FRONT, OUTCOMES, REFUSED, RIGHT, SKIPPED, Result
 from qualification.suites.sources import SUITES
 
 _TITLES = {**BACKENDS, AUTHOR: "the driver, the author's text", FRONT: "front end"}
@@ -99,13 +99,18 @@ def lenience_rows(results: Iterable[Result]) -> list[str]:
 
 
 def problems(results: Iterable[Result]) -> list[str]:
-    """The messages of cases that are not right, with the number of cases of each and one of them."""
+    """The messages of cases that are not right, with the number of cases of each and one of them; those that refuse one
+    case are one row."""
     found: dict[tuple[str, str], list[str]] = {}
     for result in results:
         for name, outcome in result.outcomes.items():
             if outcome.outcome not in (RIGHT, ACCEPTED, SKIPPED) and name != AUTHOR:
                 found.setdefault((outcome.outcome, outcome.why.splitlines()[0][:120]), []).append(result.case)
-    rows = sorted(found.items(), key=lambda item: (item[0][0], -len(item[1])))
+    single = [key for key, cases in found.items() if key[0] == REFUSED and len(set(cases)) == 1]
+    rest = sorted({case for key in single for case in found.pop(key)})
+    rows = sorted(found.items(), key=lambda item: (item[0][0], -len(set(item[1]))))
+    if rest:
+        rows.append(((REFUSED, f"{len(single)} other messages, of one case each"), rest))
     return ["| outcome | message | cases | such as |", "|---|---|---:|---|"] + [
         f"| {outcome} | {why.replace('|', chr(92) + '|')} | {len(set(cases))} | `{cases[0]}` |"
         for (outcome, why), cases in rows
