@@ -100,3 +100,13 @@ def test_two_lengths_in_a_variable() -> None:
     hlsl = emitted(text, "hlsl")
     assert hlsl.count("uint n_size, ") == 1
     assert "uint n_size_2, " in hlsl
+
+
+def test_the_length_of_a_buffer_with_atomics() -> None:
+    text = (
+        "#version 310 es\nlayout(local_size_x = 4) in;\nlayout(std430) buffer Bins { int bins[]; };\n"
+        "void main() { atomicAdd(bins[0], 1); bins[1] = bins.length(); }\n"
+    )
+    module = load_glsl_text(text, "bins.comp").module
+    emitted = next(iter(transpile(module, "wgsl", "bins", keep=True).files.values()))
+    assert "arrayLength(&bins" in emitted

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import operator_type
-from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
+from sssgen.ir.types import BOOL, FLOAT, Array, Matrix, Sampler, Scalar, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext, Typed
 from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
@@ -78,6 +78,8 @@ class AssignmentChecker:
         type_, op, start = target.expr.type, assignment.op, len(context.function.prelude)
         if not op:
             assert assignment.value is not None
+            if context.es == 100 and isinstance(type_, Array):
+                raise context.fail(span, "GLSL ES 1.00 assigns no arrays", "assign each element")
             source = expressions.check_as(assignment.value, type_, target.quantity, "the assigned value")
             return ir.Assign(self.fixed_place(target.expr, source, start), op, source, span)
         if assignment.value is not None:

@@ -232,6 +232,10 @@ class CallChecker:
         values = self.with_constants(name, values)
         if BUILTINS[name].kind == "derivative":
             self.context.derivatives.append(call.span)
+            extension = "GL_OES_standard_derivatives"
+            if self.context.es == 100 and extension not in self.context.language.extensions:
+                hint = f"write #extension {extension} : enable"
+                raise self.context.fail(call.span, f"GLSL ES 1.00 has no {name} without an extension", hint)
         if not any(arg.quantity for arg in args):
             return Typed(ir.Intrinsic(result, name, values, call.span))
         try:

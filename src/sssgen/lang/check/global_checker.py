@@ -97,6 +97,8 @@ class GlobalChecker:
         value = declarator.value
         if value is None:
             return () if isinstance(type_, Sampler) else _identity(type_)
+        if self.context.es:
+            raise self.context.fail(value.span, "a uniform of GLSL ES has no initial value", "the program sets it")
         if isinstance(type_, Sampler):
             hint = "use default_white, default_black, default_gray or default_bump"
             raise self.context.fail(value.span, "a texture has no default value", hint)

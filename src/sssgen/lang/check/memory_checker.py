@@ -42,6 +42,8 @@ class MemoryChecker:
             context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
         if not (sizes or specialized) or "in" not in layout.qualifiers.keywords:
             return
+        if 0 < context.es < 310:
+            raise context.fail(layout.qualifiers.span, "compute shaders need GLSL ES 3.10", "write #version 310 es")
         context.workgroup = (1, 1, 1)  # with a wrong size it is a compute shader, too
         numbers = []
         for name in _SIZES:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, kind_of, passed_locations, unnested
+from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, kind_of, passed_locations, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.builtin_variables import BUILTIN_VARIABLES, builtin_variable
 from sssgen.lang.check.constant_values import constant_int
@@ -90,6 +90,11 @@ class ShaderInterface:
             raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
         if "varying" in keywords and kind != "float":
             raise context.fail(span, f"a varying is a float, a vector or a matrix, but this is {a_type(element)}")
+        if storage == "out" and not self.vertex:
+            if isinstance(element, Matrix):
+                raise context.fail(span, "a colour cannot be a matrix", "declare an output for each column")
+            if word := next((word for word in keywords if word in ("flat", "smooth", "centroid")), ""):
+                raise context.fail(span, f"'{word}' belongs to what stages pass on, not to a colour")
         is_fragment_input = storage == "in" and not self.vertex
         if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
             raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")

@@ -210,6 +210,8 @@ class StatementChecker:
         if jump.kind == "return":
             return self.return_(jump)
         if jump.kind == "discard":
+            if self.context.language.vertex or self.context.language.compute:
+                raise self.context.fail(span, "discard belongs to fragment shaders")
             return [ir.Discard(span)]
         if jump.kind == "break" and function.switches:
             return [ir.Break(span)]

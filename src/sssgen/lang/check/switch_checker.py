@@ -77,6 +77,11 @@ class SwitchChecker:
             number = constant_int(self.context, label.value)
             if number is None:
                 raise self.context.fail(label.value.span, "a case label must be a constant integer")
+            if self.context.es and isinstance(label.value, s.Number):
+                kind = UINT if label.value.text.endswith(("u", "U")) else INT
+                if kind != value.type:
+                    message = f"this label is {a_type(kind)}, but the switch has {a_type(value.type)}"
+                    raise self.context.fail(label.value.span, message)
             literal = ir.Literal(value.type, number & 0xFFFFFFFF if value.type == UINT else number, label.value.span)
             equal = ir.Binary(BOOL, "==", value, literal, label.span)
             test = equal if test is None else ir.Binary(BOOL, "||", test, equal, label.span)

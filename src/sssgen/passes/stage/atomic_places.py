@@ -70,7 +70,8 @@ def _errors(module: Module) -> Iterator[Unsupported]:
         for stmt in statements(function.body or ()):
             if isinstance(stmt, Declare):
                 declared.append((stmt.type, stmt.span))
-            for expr in expressions(stmt):
+            is_length = isinstance(stmt, MemoryOperation) and stmt.name == "arrayLength"  # which reads no number
+            for expr in expressions(stmt) if not is_length else ():
                 yield from _copies(expr, places, holders)
         for type_, span in declared:
             if name := _holder(type_, holders):
