@@ -75,6 +75,10 @@ def names_of_file(file: s.File) -> set[str]:
     return names
 
 
+_NOT_OF_MEMBERS = ("const", "uniform", "in", "out", "inout", "attribute", "varying", "buffer", "shared")
+"""Qualifiers of variables, which members of structs do not have."""
+
+
 def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = False) -> None:
     """Declares a struct. One of a function is at file scope in the IR, as most languages have no local structs."""
     name, scope = struct.name.text, context.function.scopes.structs[-1]
@@ -90,8 +94,12 @@ def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = 
         if member.type.struct is not None:
             declare_struct(context, member.type.struct, local)
         type_, quantity = named_type(context, member.type)
+        if words := [word for word in member.qualifiers.keywords if word in _NOT_OF_MEMBERS]:
+            raise context.fail(member.qualifiers.span, f"a member cannot be {words[0]}", "write it before a variable")
         for declarator in member.declarators:
             label = declarator.name
+            if declarator.value is not None:
+                raise context.fail(declarator.value.span, "a member has no initial value", "write it in a constructor")
             if label.text in fields:
                 raise context.fail(label.span, f"member '{label.text}' is declared twice")
             check_not_reserved(context, label)

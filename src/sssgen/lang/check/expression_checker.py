@@ -109,6 +109,10 @@ class ExpressionChecker:
         while isinstance(part, s.IndexOf | s.MemberOf):
             self.places.add(id(part))
             part = part.value
+        if isinstance(part, s.Assignment):
+            raise self.context.fail(
+                part.span, "the value of an assignment cannot be assigned to", "write two statements"
+            )
         return self.check(expression)
 
     def operands(self, parts: Sequence[s.Expression], outs: Container[int] = ()) -> list[Typed]:

@@ -68,6 +68,8 @@ class ShaderInterface:
                 (keyword for keyword in keywords if keyword in ("flat", "noperspective", "centroid")), ""
             )
             location = self.location(declaration.qualifiers)
+            if value is not None and (storage == "in" or (storage == "out" and context.es)):
+                raise context.fail(span, "what stages pass on has no initial value", "write it in main()")
             if value is not None and storage == "shared":
                 raise context.fail(span, "shared memory has no initial value", "write it in main(), before a barrier()")
             if storage in ("private", "shared"):
