@@ -56,7 +56,7 @@ def outcomes(programs: Sequence[PictureProgram], judge: Judge) -> dict[str, Outc
         return dict.fromkeys(TARGETS, crash(error))
     results, expected, few = {}, None, False
     try:
-        expected = _drawn(
+        expected = _draw(
             programs, lambda number, mesh: draw_written(programs[number]._replace(mesh=mesh), running["gl"])
         )
         few = not expected.known.all()
@@ -124,7 +124,7 @@ def _outcome(
     except Exception as error:
         return crash(error)
     try:
-        drawn = _drawn(
+        drawn = _draw(
             [program.program for program in programs],
             lambda number, mesh: programs[number].draw(target, machine, mesh),
             few,
@@ -134,7 +134,7 @@ def _outcome(
         return _failed(error, INVALID)
 
 
-def _drawn(programs: Sequence[PictureProgram], draw: Callable[[int, Mesh], Array], few: bool = False) -> Drawn:
+def _draw(programs: Sequence[PictureProgram], draw: Callable[[int, Mesh], Array], few: bool = False) -> Drawn:
     """The pictures, or a few places of them, as where the whole ones take too long. `draw` takes a program's number."""
     size = programs[0].size
     sparse = [program.few for program in programs]

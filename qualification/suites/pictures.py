@@ -164,14 +164,14 @@ class Translations:
         renames = {old: new for stage in reflection["renames"].values() for old, new in stage.items()}
         instances = dict(_INSTANCE.findall(self.program.vertex + self.program.fragment))
 
-        def shown(source: str) -> str:
+        def stage_text(source: str) -> str:
             block, dot, member = source.partition(".")
             if block in instances:
                 source = f"{instances[block]}_{member}" if dot else source
             name = source.replace("[]", "").replace("[", "_").replace("]", "").replace(".", "_")
             return renames.get(name, name).removeprefix("gl_")
 
-        return shown
+        return stage_text
 
     def texture(self, texture: ProgramTexture) -> Texture:
         """A texture of the program; without one a texel."""

@@ -27,6 +27,7 @@ from random import Random
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parent.parent.parent
+# a script finds the project's own modules: imports follow, which E402 would refuse
 sys.path[:0] = [str(ROOT)] * (str(ROOT) not in sys.path)
 
 from glsl_batches import TARGETS, Failure  # noqa: E402

@@ -112,7 +112,7 @@ def run_amber(folder: Path, count: int) -> Result:
     return amber_runs.run_case(amber_cases.read(path))
 
 
-def drawn(result: Result) -> set[str]:
+def distinct_outcomes(result: Result) -> set[str]:
     return {outcome.outcome for outcome in result.outcomes.values()}
 
 
@@ -123,10 +123,10 @@ def needs_opengl() -> None:
 
 def test_a_case_of_amber(tmp_path: Path) -> None:
     result = run_amber(tmp_path, 3)
-    assert drawn(result) == {"right"}, result
+    assert distinct_outcomes(result) == {"right"}, result
     assert {"driver", "gl", "numpy"} <= set(result.outcomes)
     wrong = run_amber(tmp_path, 4)
-    assert drawn(wrong) == {"wrong", "skipped"}  # the driver is wrong, too
+    assert distinct_outcomes(wrong) == {"wrong", "skipped"}  # the driver is wrong, too
     assert wrong.outcomes["driver"].why == "64 of 64 pixels; the first is [0, 0, 4, 255]"
 
 
@@ -146,7 +146,7 @@ def test_a_compute_shader_of_amber(tmp_path: Path) -> None:
     for expected, outcome in (("1", "right"), ("2", "wrong")):
         path.write_text(SCRIPT.replace("4 == 1", f"4 == {expected}"), "utf-8")
         result = amber_runs.run_case(amber_cases.read(path))
-        assert result.kind == "buffers" and drawn(result) == {outcome}, result
+        assert result.kind == "buffers" and distinct_outcomes(result) == {outcome}, result
         assert {"driver", "gl"} <= set(result.outcomes)
 
 
@@ -170,10 +170,10 @@ def test_a_page_of_the_tester() -> None:
     assert isinstance(green, webgl_cases.PictureCase) and green.uniforms == {"bright": (0.5, 1.0)}
     assert isinstance(broken, TextCase) and not broken.valid
     (result, refused) = webgl_runs.run_cases([green, broken])
-    assert drawn(result) == {"right"}, result
-    assert refused.kind == "must fail" and drawn(refused) == {"right"}
+    assert distinct_outcomes(result) == {"right"}, result
+    assert refused.kind == "must fail" and distinct_outcomes(refused) == {"right"}
     dark, _ = webgl_cases.page_cases(PAGE.replace("BRIGHT", "0.9"), "a.html")
-    assert drawn(webgl_runs.run_cases([dark])[0]) == {"wrong", "skipped"}
+    assert distinct_outcomes(webgl_runs.run_cases([dark])[0]) == {"wrong", "skipped"}
 
 
 def test_another_page_with_shaders() -> None:
@@ -198,7 +198,7 @@ def test_a_page_of_ogles(tmp_path: Path, value: str, model: str | None, outcome:
     run = f"OpenGLESTestRunner.run({json.dumps({'tests': [test]})[:-2]},]}});\nvar successfullyParsed = true;"
     path.write_text(run, "utf-8")
     (result,) = webgl_runs.run_cases([*webgl_cases.ogles_cases(path, "a")])
-    assert drawn(result) == outcome, result
+    assert distinct_outcomes(result) == outcome, result
 
 
 def test_a_sample(tmp_path: Path) -> None:
@@ -211,7 +211,7 @@ def test_a_sample(tmp_path: Path) -> None:
     (folder / "a.json").write_text(json.dumps(values), "utf-8")
     (case,) = sample_cases.cases(tmp_path)
     result = sample_cases.run_case(case)
-    assert case.name == "100/a.frag" and drawn(result) == {"right"}, result
+    assert case.name == "100/a.frag" and distinct_outcomes(result) == {"right"}, result
 
 
 def test_a_sample_that_computes(tmp_path: Path) -> None:
@@ -230,7 +230,7 @@ def test_a_sample_that_computes(tmp_path: Path) -> None:
     (case,) = sample_cases.cases(tmp_path)
     assert np.frombuffer(case.buffer, np.int32).tolist() == [3, 1, 2, 3, 4]
     result = sample_cases.run_case(case)
-    assert result.kind == "buffers" and drawn(result) == {"right"}, result
+    assert result.kind == "buffers" and distinct_outcomes(result) == {"right"}, result
 
 
 def test_stable_pixels_depend_on_no_rounding() -> None:

@@ -83,7 +83,7 @@ class CheckContext:
     technique. `converts`: numbers convert implicitly, as in desktop GLSL.
     """
 
-    def __init__(self, reporter: Reporter, plain: bool = False, language: Language = Language()) -> None:  # noqa: B008
+    def __init__(self, reporter: Reporter, plain: bool = False, language: Language = Language()) -> None:  # noqa: B008 - immutable
         self.reporter = reporter
         self.plain = plain
         self.language = language

@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.transform import rewrite_block, rewrite_module
+from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import INT, Array, Matrix
 from sssgen.ir.walk import all_expressions, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import claim, names_of
+from sssgen.passes.stage.entry_copies import copies_first, copies_last
 
 
 def interface_arrays(module: ir.Module, kind: str, entry: str, can: Capabilities) -> ir.Module:
@@ -47,8 +48,7 @@ def _with_single_attributes(module: ir.Module, attributes: list[ir.Variable], en
             variables.insert(index + number, single)
             copies.append(_copy(_element(attribute, attribute.name, number), ir.Global(element, name, attribute.span)))
     functions = [
-        function._replace(body=(*copies, *(function.body or ()))) if function.key == entry else function
-        for function in module.functions
+        copies_first(function, tuple(copies)) if function.key == entry else function for function in module.functions
     ]
     return module._replace(variables=tuple(variables), functions=tuple(functions))
 
@@ -70,17 +70,7 @@ def _with_copied_outputs(module: ir.Module, outputs: list[ir.Variable], entry: s
         ]
     )
 
-    def restate(stmt: ir.Stmt) -> ir.Block | None:
-        return (*copies, stmt) if isinstance(stmt, ir.Return) else None
-
-    functions = list[ir.Function]()
-    for function in module.functions:
-        body = function.body or ()
-        if function.key == entry:
-            body = rewrite_block(body, change, restate)
-            body = body if body and isinstance(body[-1], ir.Return) else (*body, *copies)
-            function = function._replace(body=body)
-        functions.append(function)
+    functions = [copies_last(function, copies) if function.key == entry else function for function in module.functions]
     private = [
         output._replace(name=names[output.name], storage="private", location=-1, builtin="", interpolation="")
         for output in outputs

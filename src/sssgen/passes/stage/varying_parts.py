@@ -13,10 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.rules import returns
-from sssgen.ir.transform import rewrite_function
 from sssgen.ir.types import INT, Array, Struct, Type
 from sssgen.passes.scopes import claim, names_of
+from sssgen.passes.stage.entry_copies import copies_first, copies_last
 from sssgen.passes.stage.stage_interface import entry_of, stage_kind
 from sssgen.passes.stage.varyings import parts, varyings
 
@@ -44,9 +43,9 @@ def varying_parts(module: ir.Module) -> ir.Module:
             passed = ir.Global(part.type, part.name, part.span)
             target, value = (passed, place) if kind == "vertex" else (place, passed)
             copies.append(ir.Assign(target, "", value, part.span))
+    add_copies = copies_last if kind == "vertex" else copies_first
     functions = [
-        _with_copies(function, tuple(copies), kind == "vertex") if function is entry else function
-        for function in module.functions
+        add_copies(function, tuple(copies)) if function is entry else function for function in module.functions
     ]
     return module._replace(variables=tuple(variables), functions=tuple(functions))
 
@@ -70,17 +69,3 @@ def _places(place: ir.Expr, names: tuple[str, ...]) -> Iterator[tuple[tuple[str,
             yield from _places(element, (*names, str(index)))
     else:
         yield names, place
-
-
-def _with_copies(main: ir.Function, copies: ir.Block, at_end: bool) -> ir.Function:
-    """The entry with these statements first, or before each of its ends."""
-    body = main.body or ()
-    if not at_end:
-        return main._replace(body=(*copies, *body))
-    changed = rewrite_function(main, lambda node: node, lambda stmt: _before_return(stmt, copies))
-    body = changed.body or ()
-    return changed._replace(body=body if returns(body) else (*body, *copies))
-
-
-def _before_return(stmt: ir.Stmt, copies: ir.Block) -> ir.Block | None:
-    return (*copies, stmt) if isinstance(stmt, ir.Return) else None
