@@ -8,7 +8,7 @@ constant expressions unchanged.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import isfinite
 from typing import NamedTuple
 
@@ -112,17 +112,17 @@ class ConstantChecker:
         return None
 
 
-_PARTS: dict[str, tuple[tuple[int, ...], Callable[..., bool]]] = {
-    "clamp": ((1, 2), lambda low, high: low > high),
-    "smoothstep": ((0, 1), lambda low, high: low >= high),
-}
-"""Builtin → the arguments that WGSL's compilers check by themselves, and where they refuse them."""
-
-
 def _is_outside(name: str, args: Sequence[Value | None]) -> bool:
-    indices, wrong = _PARTS.get(name, ((), bool))
-    numbers = [part for index in indices if (part := args[index]) is not None]
-    return bool(indices) and len(numbers) == len(indices) and any(map(wrong, *numbers))
+    """Whether the constants among the arguments that compilers check are outside of the domain in a component."""
+    row = BUILTINS[name]
+    numbers = [part for index in row.checked if (part := args[index]) is not None]
+    if row.defined is None or not numbers or len(numbers) < len(row.checked):
+        return False
+    for component in zip(*numbers, strict=False):  # a scalar is checked with the first component
+        values = dict(zip(row.checked, component, strict=True))
+        if not row.defined(None, *[values.get(index, 0.0) for index in range(len(args))]):
+            return True
+    return False
 
 
 def _exactly(op: str, left: Numbers, right: Numbers) -> list[float]:

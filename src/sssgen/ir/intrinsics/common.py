@@ -182,7 +182,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         es=100, fold=lambda x, y, z: check_domain(y <= z, min(max(x, y), z)), same_quantity=3, quantity="argument",
         range=lambda F, x, y, z: clip(x, y, z),
         guards=(Guard(lambda F, x, y, z: y.high <= z.low, "undefined", "the lower bound above the upper one", "min(max(x, y), z)", ordered=(1, 2)),),
-        defined=lambda rt, x, y, z: y <= z,
+        defined=lambda rt, x, y, z: y <= z, checked=(1, 2),
         domain="y <= z; x is not NaN", cost=2,
         ulp=0.0, vectors=(
             ((0.5, 0.0, 1.0), 0.5), ((-0.5, 0.0, 1.0), 0.0), ((7, 1, 4), 4),
@@ -228,7 +228,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
             Guard(lambda F, x, y, z: (y - x).low >= F.tiny, "undefined", "edges in the wrong order, or equal", _STEP, doc=_STEP_DOC, advice=_step_advice),
             Guard(lambda F, x, y, z: (y - x).high <= F.largest, "overflow", "a difference of the edges that overflows", _STEP, doc=_STEP_DOC, advice=_step_advice),
         ),
-        defined=lambda rt, x, y, z: x < y, inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
+        defined=lambda rt, x, y, z: x < y, checked=(0, 1), inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
         domain="x < y", explicit_type=("wgsl",), cost=8, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
         vectors=(((0.0, 2.0, 0.5), 0.15625), ((0.0, 1.0, 0.0), 0.0), ((0.0, 1.0, (0.5, 3.0)), (0.5, 1.0))),

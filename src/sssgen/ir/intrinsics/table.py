@@ -216,6 +216,8 @@ class Builtin(NamedTuple):
     defined: Callable[..., Any] | None = None
     """Where GLSL defines a result that is finite in any case, as `inside` from `rt` and the arguments; `transpile
     --verify` excludes the other inputs. None: wherever the result is finite."""
+    checked: tuple[int, ...] = ()
+    """The arguments whose constants WGSL's compilers hold against `defined`, whatever the other arguments are."""
     inside: Callable[..., Any] | None = None
     """Where the parity is measured: for each component, from the module `rt` of the NumPy runtime and the arguments. It
     leaves out where intermediate results overflow or underflow. None: every finite number."""
