@@ -72,7 +72,7 @@ def glsl(assembly: str) -> str:
         Path(source).write_text(assembly, "utf-8")
         _output("spirv-as", "--target-env", "spv1.3", source, "-o", module)
         text = _output("spirv-cross", "--version", "310", "--es", module)
-    if wrong := judgement(text):
+    if wrong := judgement(text, "fragment"):
         raise ValueError(f"glslang refuses what spirv-cross writes: {wrong}")
     return text
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 from qualification.suites.outcomes import CRASH, INVALID, REFUSED, RIGHT, Outcome
 from sssgen.run.check.compiler_inputs import sources
-from sssgen.run.compilers import CompilerMissing, Source, errors, readers
+from sssgen.run.compilers import CompilerMissing, Source, Stage, errors, readers
 from sssgen.run.compilers.compiler_process import Worker
 from sssgen.support.diagnostics import SssgenError
 
@@ -42,10 +42,10 @@ def complaint(files: Mapping[str, str]) -> str:
     return ""
 
 
-def judgement(text: str) -> str:
-    """The first error of glslang about an author's fragment shader; '' where it has none, or where it is missing."""
+def judgement(text: str, stage: Stage) -> str:
+    """The first error of glslang about an author's shader; '' where it has none, or where it is missing."""
     worker = _worker("glslang")
-    wrong = errors(worker.check(Source(text, "glsl-330"))) if worker is not None else []
+    wrong = errors(worker.check(Source(text, "glsl-330", stage))) if worker is not None else []
     return wrong[0].text if wrong else ""
 
 

@@ -11,6 +11,7 @@ from qualification.suites import (
     deqp_cases,
     piglit_shaders,
     piglit_vectors,
+    reference_pages,
     sample_cases,
     text_folders,
     webgl_cases,
@@ -90,6 +91,10 @@ _SAMPLES_ABOUT = (
     "as the interpreter of `--verify` finds. Where WGSL and NumPy are both against the driver, NumPy decides. "
     "Compute shaders leave the same buffers."
 )
+_FUNCTIONS = (
+    "Each function that the pages of GLSL ES 3.00 list, and each that those of 3.10 add, is called in a shader of its "
+    "own with uniforms. Functions that glslang does not know are skipped: errors of the pages."
+)
 _DEQP = "qualification.suites.deqp_runs:run_cases"
 _TEXTS = "qualification.suites.text_cases:run_cases"
 _VK_GL_CTS = ("KhronosGroup/VK-GL-CTS", "c57d29f97dbd51e6ff57e9eb1a98808e66afa0d3")
@@ -154,6 +159,15 @@ SUITES = {
         text_folders.lygia,
         _TEXTS,
         _BUILDS,
+    ),
+    "reference-pages": Suite(
+        "KhronosGroup/OpenGL-Refpages",
+        "325d0438",
+        tuple(reference_pages.VERSIONS),
+        "SGI-B-2.0",
+        reference_pages.cases,
+        _TEXTS,
+        _FUNCTIONS,
     ),
     "piglit": Suite(*_PIGLIT, ("tests",), "MIT and others", piglit_shaders.cases, _TEXTS, _BUILDS),
     "piglit-vectors": Suite(

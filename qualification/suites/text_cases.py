@@ -44,7 +44,7 @@ def run_cases(cases: Sequence[TextCase]) -> list[Result]:
 def run_case(case: TextCase) -> Result:
     """The result of one case."""
     skipped = case.skipped
-    if case.judged and (message := judgement(case.text)):
+    if case.judged and (message := judgement(case.text, "compute" if case.label.endswith(".comp") else "fragment")):
         skipped = f"glslang refuses it: {message}"
     if skipped:
         return Result(case.name, "skipped", {FRONT: Outcome(SKIPPED, skipped)})
