@@ -191,3 +191,16 @@ def test_every_definition_is_found_by_its_types() -> None:
         assert is_out_builtin(name)
         assert source.count(f" {name}(") >= 1
     assert not is_out_builtin("texture")
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_one_file_calls_it_with_several_types(name: str) -> None:
+    """Also GLSL ES, which converts nothing."""
+    calls = []
+    for size in (1, 3, 2):
+        names = [f"v{size}_{at}" for at in range(len(KINDS[name]))]
+        calls += [f"{spell(type_)} {variable};" for type_, variable in zip(typed(name, size), names, strict=True)]
+        calls.append(f"{name}({', '.join(names)});")
+    text = f"#version 310 es\nprecision highp float;\nvoid f() {{ {' '.join(calls)} }}\n"
+    names = [function.name for function in load_glsl_text(text, "case.frag").module.functions]
+    assert names.count(name) == 3

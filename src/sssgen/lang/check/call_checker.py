@@ -58,7 +58,7 @@ class CallChecker:
             return self.memory.operation(MEMORY[name], call)
         args = self.expressions.operands(call.args, self.outs(name, overloads, call))
         types = tuple([arg.expr.type for arg in args])
-        exact = next((signature for signature in overloads if signature.types == types), None)
+        exact = _exact(overloads, types)
         if exact is not None:
             return self.call_function(name, exact, args, call)
         if candidates(name) and (not overloads or (context.plain and resolve(name, types) is not None)):
@@ -91,8 +91,10 @@ class CallChecker:
         """The overload that fits a call best; its arguments are checked for their types only."""
         check = self.expressions.check
         types = tuple([self.expressions.with_prelude(part, check)[0].expr.type for part in call.args])
-        viable = [signature for signature in overloads if signature.types == types]
-        viable = viable or [signature for signature in overloads if _is_viable(signature, types)] or [*overloads]
+        exact = _exact(overloads, types)
+        if exact is not None:
+            return exact
+        viable = [signature for signature in overloads if _is_viable(signature, types)] or [*overloads]
         return min(viable, key=lambda signature: _conversion_cost(signature, types))
 
     def glsl_builtin(self, name: str, args: list[Typed], call: s.CallOf) -> Typed | None:
@@ -147,11 +149,14 @@ class CallChecker:
         return Typed(ir.Literal(INT, element[1], call.span))
 
     def overload(self, name: str, args: list[Typed], call: s.CallOf) -> Signature:
-        """The overload for a call without an exact match: the only one, or the one with the fewest conversions."""
+        """The overload for a call: the exact match, the only one, or the one with the fewest conversions."""
         overloads = self.context.functions[name]
         types = tuple([arg.expr.type for arg in args])
         if name in self.context.faulty:
             raise AlreadyReported
+        exact = _exact(overloads, types)
+        if exact is not None:
+            return exact
         if len(overloads) == 1:
             only = overloads[0]
             count = len(only.types)
@@ -285,6 +290,11 @@ class CallChecker:
 
 _WITH_BIAS = {"texture": 3, "textureOffset": 4}
 """Read → how many arguments it has with a bias."""
+
+
+def _exact(overloads: Sequence[Signature], types: tuple[Type, ...]) -> Signature | None:
+    """The overload that takes exactly these types."""
+    return next((signature for signature in overloads if signature.types == types), None)
 
 
 def _is_viable(signature: Signature, types: tuple[Type, ...]) -> bool:
