@@ -1,4 +1,4 @@
-"""The shader cases of VK-GL-CTS: files `data/gles*/shaders/*.test`, as their owner publishes them.
+"""The shader cases of VK-GL-CTS: files such as `data/gles*/shaders/*.test`, as their owner publishes them.
 
 A file has groups of cases. A case has the texts of its stages, what a compiler has to do with them, and the values of
 inputs and outputs, where it has any.
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 _TOKEN = re.compile(
-    r'(?P<skip>\s+|#[^\n]*)|""(?P<text>.*?)""|"(?P<line>[^"\n]*)"|(?P<word>[A-Za-z_][\w.]*)'
+    r'(?P<skip>\s+|#[^\n]*)|""(?P<text>.*?)""|"(?P<line>[^"\n]*)"|(?P<word>[A-Za-z_][\w.-]*)'
     r"|(?P<number>[-+]?(?:0[xX][0-9a-fA-F]+|\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)[uUfF]?)|(?P<mark>[{}\[\]()|,;=:<>])",
     re.DOTALL,
 )
@@ -53,7 +53,7 @@ class SuiteFormatError(Exception):
 
 def read(path: Path, group: str) -> Iterator[Case]:
     """The cases of a file, whose names begin with `group`. Raises SuiteFormatError."""
-    reader = _Reader(path.read_text("utf-8"), str(path))
+    reader = _Reader(path.read_text("utf-8", errors="replace"), str(path))
     yield from reader.cases([group])
     if reader.next[0]:
         raise SuiteFormatError(f"{path}: {reader.next[1][:40]!r} is no group and no case")

@@ -49,8 +49,9 @@ def deqp(*folders: str) -> Callable[[Path], Iterator[deqp_cases.Case]]:
     def cases(root: Path) -> Iterator[deqp_cases.Case]:
         for folder in folders:
             for path in sorted((root / folder).rglob("*.test")):
-                parts = path.relative_to(root / "data").with_suffix("").parts
-                yield from deqp_cases.read(path, "/".join(part for part in parts if part != "shaders"))
+                if not path.name.startswith("Coverage"):  # in a format of its own
+                    parts = path.relative_to(root).with_suffix("").parts
+                    yield from deqp_cases.read(path, "/".join(part for part in parts if part not in _PLACES))
 
     return cases
 
@@ -60,6 +61,10 @@ def amber(root: Path) -> Iterator[amber_cases.Case]:
     yield from map(amber_cases.read, sorted((root / _AMBER).glob("*.amber")))
 
 
+_PLACES = ("data", "external", "openglcts", "shaders", "vulkancts")
+"""Folders that are not part of a case's name."""
+_GL_CTS = "external/openglcts/data/gl_cts/data"
+_VULKAN_GLSL = "external/vulkancts/data/vulkan/glsl/es310"
 _AMBER = "external/vulkancts/data/vulkan/amber/graphicsfuzz"
 _BUILDS = (
     "A case that only has to build is translated, with both of its stages where it has them, and each text is "
@@ -103,6 +108,8 @@ SUITES = {
     name: Suite(*_VK_GL_CTS, (f"data/{name}/shaders",), "Apache-2.0", deqp(f"data/{name}/shaders"), _DEQP, _VALUES)
     for name in ("gles2", "gles3", "gles31")
 } | {
+    "gl-cts": Suite(*_VK_GL_CTS, (_GL_CTS,), "Apache-2.0", deqp(_GL_CTS), _DEQP, _VALUES),
+    "vulkan-glsl": Suite(*_VK_GL_CTS, (_VULKAN_GLSL,), "Apache-2.0", deqp(_VULKAN_GLSL), _DEQP, _VALUES),
     "amber-graphicsfuzz": Suite(
         *_VK_GL_CTS, (_AMBER,), "Apache-2.0", amber, "qualification.suites.amber_runs:run_cases", _AMBER_ABOUT
     ),
