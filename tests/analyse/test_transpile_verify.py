@@ -233,6 +233,17 @@ def test_every_version_of_glsl_runs(rows: Rows, version: str) -> None:
     assert rows(text)["f(vec2)"].ok
 
 
+def test_macros_are_those_of_the_version(machines: Machines) -> None:
+    """Also where the text without its #version would be one of GLSL ES."""
+    text = """#version 330
+precision highp float;
+#if defined(GL_core_profile) && !defined(GL_ES)
+float f(float x) { return x; }
+#endif"""
+    report = verify(text, "shader.glsl", Options(SAMPLES), machines=machines)
+    assert [row.function for row in report.rows] == ["f(float)"] and report.ok
+
+
 def test_a_scene_of_shadertoy_has_its_uniforms(machines: Machines) -> None:
     text = """void mainImage(out vec4 color, in vec2 at) {
     color = vec4(at / iResolution.xy, sin(iTime), iChannelTime[1]) + texture(iChannel0, at / 64.0);

@@ -82,13 +82,14 @@ def load_glsl_text(
     defines: Mapping[str, str] | None = None,
     entry: str = "",
     assumptions: bool = False,
+    language: tuple[int, str] | None = None,
 ) -> GlslFile:
-    """The checked module of a GLSL text; see `load_glsl`."""
+    """The checked module of a GLSL text; see `load_glsl`, and for `language` `preprocess`."""
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
     finder = _Finder(roots)
     with pause_gc():
-        loaded = _load(text, label, preprocess(text, label, finder.find, defines), entry, assumptions)
+        loaded = _load(text, label, preprocess(text, label, finder.find, defines, language), entry, assumptions)
     return loaded._replace(paths=finder.paths)
 
 

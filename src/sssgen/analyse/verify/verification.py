@@ -42,11 +42,9 @@ from sssgen.support.progress import Progress, silent
 
 def load(text: str, shown: str, version: str = "") -> Module:
     """The module of a text of plain GLSL, whose `#version` is passed separately: `330`, `300 es`."""
-    number = version.split(" ")[0]
-    defines = {"__VERSION__": number} if number else {}
-    if number == "100" or version.endswith("es"):
-        defines["GL_ES"] = "1"
-    return load_glsl_text(text, shown, defines=defines).module
+    number, _, profile = version.partition(" ")
+    language = (int(number), "es" if number == "100" else profile) if number else None
+    return load_glsl_text(text, shown, language=language).module
 
 
 DEFAULTS = Options()

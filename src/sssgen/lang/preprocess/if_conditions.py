@@ -32,7 +32,7 @@ _Value = int | Fault
 def evaluate(tokens: Sequence[Token], is_defined: Callable[[str], bool], place: Span, strict: bool = False) -> int:
     """The value of an expression after macro expansion, as a signed 64-bit integer.
 
-    A remaining name is 0. Both this and `++` are errors if the expression is `strict`, as in GLSL ES. `is_defined`
+    A remaining name is 0, and an error if the expression is `strict`, as in GLSL ES. `is_defined`
     evaluates `defined X`; `place` is the directive's, for errors at the end. Raises Fault.
     """
     reader = _Reader(tokens, is_defined, place, strict)
@@ -109,10 +109,8 @@ class _Reader:
 
     def unary(self, depth: int) -> _Value:
         signs: list[str] = []
-        while self.text in ("+", "-", "!", "~", "++", "--"):
-            if self.strict and len(self.text) > 1:
-                raise self.unexpected()
-            signs += self.take().text  # `--1` is two signs, as there are no variables
+        while self.text in ("+", "-", "!", "~"):
+            signs.append(self.take().text)
         value = self.primary(depth)
         for sign in reversed(signs):
             if isinstance(value, int):

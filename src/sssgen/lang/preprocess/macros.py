@@ -44,10 +44,10 @@ class Macro(NamedTuple):
     fault: tuple[Span, str, str] | None = None
     """What is wrong with its body, which is an error where the macro is used."""
 
-    def same_as(self, other: Macro, spaced: bool = False) -> bool:
-        """Whether both have the same definition, wherever it is written; `spaced`: with blanks at the same places."""
+    def same_as(self, other: Macro) -> bool:
+        """Whether both have the same definition, wherever it is written, with blanks at the same places."""
         same = self.params == other.params and [t.text for t in self.body] == [t.text for t in other.body]
-        return same and not (spaced and _blanks(self.body) != _blanks(other.body))
+        return same and _blanks(self.body) == _blanks(other.body)
 
 
 def _blanks(tokens: Sequence[Token]) -> list[bool]:
@@ -84,6 +84,9 @@ def definition(tokens: Sequence[Token], place: Span) -> Macro:
     for edge in (*body[:1], *body[-1:]):
         if edge.type == "PASTE":
             raise Fault(edge.span, "'##' must be between two tokens")
+    for mark, token in pairwise(body):
+        if mark.type == "HASH" and token.text in (params or ()):
+            raise Fault(mark.span, "GLSL has no operator '#': it has no texts")
     return Macro(name.text, params, tuple(body), any(token.type == "PASTE" for token in body))
 
 

@@ -61,19 +61,22 @@ class PreprocessedText(NamedTuple):
     """The macros that were expanded, if they are still defined at the end."""
 
 
-def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | None = None) -> PreprocessedText:
+def preprocess(
+    text: str, file: str, find: Find, defines: Mapping[str, str] | None = None, language: tuple[int, str] | None = None
+) -> PreprocessedText:
     """Executes the directives of a text and of all that it includes, and expands its macros.
 
     `defines` are macros without parameters, defined before the first line. A token has the place where it is written; a
     token from a macro's body has the place of the macro's use. `#line` sets `__LINE__` and `__FILE__` alone: messages
     show the real lines. Macros that are names of numbers become constants (macro_constants.py).
 
-    Without #version, a text that sets a precision outside of any #if is GLSL ES 1.00: the GLSL 1.10 of desktops, the
-    other language without a version, has no precision. Engines rely on its `GL_ES`.
+    `language` is the version and the profile of the macros of a text without #version. By default, a text that sets a
+    precision outside of any #if is GLSL ES 1.00: the GLSL 1.10 of desktops, the other language without a version, has
+    no precision. Engines rely on its `GL_ES`.
 
     Raises SssgenError with every error found, also where a limit is exceeded (those here and in macros.py).
     """
-    language = (100, "es") if _sets_precision(text) else (0, "")
+    language = language or ((100, "es") if _sets_precision(text) else (0, ""))
     barred: frozenset[str] = frozenset()
     for keep in (True, True, False):
         run = _Run(find, defines or {}, MacroConstants(barred) if keep else None, language)
@@ -127,7 +130,7 @@ class _Run:
         self.find = find
         self.constants = constants
         self.lexer = Lexer()
-        self.directive_lexer = Lexer({**KEYWORDS, "##": "PASTE"})
+        self.directive_lexer = Lexer({**KEYWORDS, "##": "PASTE", "#": "HASH"})
         self.expander = Expander(self.join, self.error)
         self.tokens: list[Token] = []
         self.comments: dict[str, list[Comment]] = {}
@@ -252,6 +255,8 @@ class _Run:
         elif name == "undef":
             macro = self.macro_name(self.tokens_of(file, rest, place), place, name)
             if macro is not None:
+                if self.version and macro.text.startswith("GL_"):
+                    self.error(macro.span, f"'{macro.text}' belongs to the language, which defines it")
                 self.undefine(macro.text)
         elif name == "include":
             self.include(file, rest, place, match.start("rest"))
@@ -304,7 +309,7 @@ class _Run:
             self.error(place, f"there is no #if before this #{name}")
             return
         branch = branches[-1]
-        if name != "elif" and self.is_es and plain(rest):
+        if name != "elif" and self.version and plain(rest):
             self.error(place, f"'{plain(rest)}' is not expected after #{name}", "write it as a comment: // …")
         if name == "endif":
             branches.pop()
@@ -417,10 +422,12 @@ class _Run:
             self.error(*fault.details)
             return
         macros, constants = self.expander.macros, self.constants
-        if macro.name in macros and macros[macro.name].same_as(macro, self.is_es):
+        if macro.name in macros and macros[macro.name].same_as(macro):
             return
-        if keep and self.is_es and macro.name.startswith("GL_"):
-            self.error(tokens[0].span, f"'{macro.name}' is reserved in GLSL ES: choose a name without GL_")
+        if keep and self.version and macro.name.startswith("GL_"):
+            self.error(tokens[0].span, f"'{macro.name}' is reserved in GLSL: choose a name without GL_")
+        if keep and self.is_es and macro.pastes:
+            self.error(place, "GLSL ES has no '##'")
         if keep and self.version and macro.name in self.text_macros:
             self.error(tokens[0].span, f"'{macro.name}' is already defined as something else", f"#undef {macro.name}")
         self.undefine(macro.name)
