@@ -9,6 +9,7 @@ import pytest
 
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.two_stages import Source, TranslatedProgram, transpile_stages
+from sssgen.run import compilers
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.program_reflection import ROWS
 
@@ -372,3 +373,23 @@ void main() { color = vec4(turn * vec3(a, t), 1.0); }
     turn = {("turn", column): "smooth" for column in range(3)}
     assert varyings == {("a",): "centroid", **turn}
     assert program["uniforms"][0]["stages"] == ["vertex", "fragment"]
+
+
+def test_names_that_differ_at_one_location() -> None:
+    """A language without locations matches by name: a name that both stages have free is taken."""
+    vertex = "#version 310 es\nlayout(location = 1) out highp float height;\n"
+    vertex += "void main() { gl_Position = vec4(0.0); height = 1.0; }"
+    fragment = """#version 310 es
+precision highp float;
+layout(location = 1) in float level;
+layout(location = 0) out vec4 color;
+float height() { return 2.0; }
+void main() { color = vec4(level * height()); }
+"""
+    files = translate(vertex, fragment, "glsl-es-300").files
+    assert "height_2 = 1.0;" in files["pair.glsl-es-300.vert"]
+    assert "in float height_2;" in files["pair.glsl-es-300.frag"]
+    for target in ("glsl-es-300", "glsl-330"):
+        files = translate(vertex, fragment, target).files
+        source = compilers.Source(files[f"pair.{target}.frag"], target, companion=files[f"pair.{target}.vert"])
+        assert not [message for own in compilers.check(source).values() for message in compilers.errors(own)]

@@ -16,6 +16,7 @@ from sssgen.passes.stage.linked_stages import (
     unlike_blocks,
     unlike_locations,
     unlike_orders,
+    with_common_names,
     with_shared_uniforms,
 )
 from sssgen.passes.stage.stage_interface import ENTRY, stage_kind
@@ -85,6 +86,8 @@ def transpile_stages(
                 [Diagnostic("error", each.message, each.span, each.hint, source_line(each.span)) for each in wrong]
             )
         modules["vertex"], modules["fragment"] = link_program(modules["vertex"], modules["fragment"])
+        if not chosen.capabilities.varying_locations:
+            modules["vertex"], modules["fragment"] = with_common_names(modules["vertex"], modules["fragment"])
         states = _states(modules, guards, chosen, rows)
         own = {kind: {uniform.name for uniform in state.module.uniforms} for kind, state in states.items()}
         sampled = {kind: sampled_textures(state.module) for kind, state in states.items()}

@@ -8,14 +8,14 @@ Place: after the functions that main() does not call are gone, before names are 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Call, Expr, Function, Global, Intrinsic, Local, Module, Uniform
 from sssgen.ir.types import Sampler, uniform_locations
 from sssgen.ir.walk import all_expressions, calls_of, subexpressions
-from sssgen.passes.scopes import claim, globals_of, names_of
+from sssgen.passes.scopes import Renamer, claim, declared, globals_of, names_of
 from sssgen.passes.stage.varyings import contrast, mismatches, output_of, place, varyings
 from sssgen.passes.unsupported import Unsupported
 
@@ -123,6 +123,28 @@ def link_program(vertex: Module, fragment: Module) -> tuple[Module, Module]:
         for variable in vertex.variables
     ]
     return _without_unread_inputs(vertex._replace(variables=tuple(variables))), fragment
+
+
+def with_common_names(vertex: Module, fragment: Module) -> tuple[Module, Module]:
+    """Both stages with one name for each output and the input that receives it, for languages without locations."""
+    outputs = varyings(vertex, "vertex")
+    taken = {name for module in (vertex, fragment) for name in names_of(module)}
+    taken |= {name for module in (vertex, fragment) for function in module.functions for name in declared(function)}
+    written, read = dict[str, str](), dict[str, str]()
+    for input_ in varyings(fragment, "fragment"):
+        output = output_of(input_, outputs)
+        if output is not None and output.name != input_.name:
+            written[output.name] = read[input_.name] = claim(output.name, taken)
+    return _with_names(vertex, written), _with_names(fragment, read)
+
+
+def _with_names(module: Module, names: Mapping[str, str]) -> Module:
+    """The module with other names for some of its variables."""
+    if not names:
+        return module
+    variables = [variable._replace(name=names.get(variable.name, variable.name)) for variable in module.variables]
+    functions = [Renamer(names, {}).function(function) for function in module.functions]
+    return module._replace(variables=tuple(variables), functions=tuple(functions))
 
 
 def _without_unread_inputs(module: Module) -> Module:

@@ -114,6 +114,11 @@ class _Passed(NamedTuple):
     name: str
     lengths: str
 
+    @property
+    def key(self) -> str:
+        """What the other stage has to declare, too: its location where it states one, else its name."""
+        return re.sub(r"\s", "", self.layout) or self.name
+
 
 def _interface(text: str, direction: str) -> list[_Passed]:
     """The stage's `in` or `out` variables."""
@@ -124,8 +129,8 @@ def _interface(text: str, direction: str) -> list[_Passed]:
 
 def _missing_outputs(vertex: str, fragment: str) -> list[Message]:
     """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
-    written = {variable.name for variable in _interface(vertex, "out")}
-    names = [variable.name for variable in _interface(fragment, "in") if variable.name not in written]
+    written = {variable.key for variable in _interface(vertex, "out")}
+    names = [variable.name for variable in _interface(fragment, "in") if variable.key not in written]
     return [Message("error", 0, 0, f"the vertex stage does not write the fragment's {name}") for name in names]
 
 
