@@ -1,4 +1,5 @@
-"""Loops that nothing leaves, and what exceeds the limits of compilers, compile in every language; not executed."""
+"""Loops that nothing leaves, statements that nothing reaches, and what exceeds the limits of compilers: they compile in
+every language. Not executed."""
 
 from __future__ import annotations
 
@@ -42,8 +43,28 @@ void main() {
 """.replace("INSTANCE", "a" * 1024)
 
 
+UNREACHED = """#version 300 es
+precision highp float;
+uniform int choice;
+out vec4 color;
+float chosen(float x) {
+    for (int i = 0; i < choice; i++) {
+        if (i == 2) { break; } else { continue; }
+        x += 1.0;
+    }
+    if (choice > 3) {
+        return x;
+    } else {
+        if (choice < 1) { return 2.0 * x; } else { return 3.0 * x; }
+        x = 1.0;
+    }
+}
+void main() { color = vec4(chosen(2.0)); }
+"""
+
+
 @pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("source", [ENDLESS, LARGE], ids=["endless", "large"])
+@pytest.mark.parametrize("source", [ENDLESS, LARGE, UNREACHED], ids=["endless", "large", "unreached"])
 def test_the_text_compiles(source: str, target: str) -> None:
     module = load_glsl_text(source, "limits.frag").module
     text = next(iter(transpile(module, target, "limits", keep=True).files.values()))

@@ -16,6 +16,13 @@ from sssgen.passes.legal.part_stores import component_stores, is_dynamic_store, 
 _JUMPS = (ir.Return, ir.Break, ir.Continue)  # a discarded invocation may go on
 
 
+def _jumps(stmt: ir.Stmt) -> bool:
+    """Whether nothing behind a statement in its block is reached: naga looks for a return at the end alone."""
+    if isinstance(stmt, ir.If):
+        return any(map(_jumps, stmt.then)) and any(map(_jumps, stmt.otherwise))
+    return isinstance(stmt, _JUMPS)
+
+
 class OutOfOrderError(Exception):
     """A value would be computed before a call that precedes it in the source."""
 
@@ -33,7 +40,7 @@ class LegalStatements(LegalExpressions):
         if self.current is not None and not (self.capabilities.discard_ends and self.capabilities.endless_loops):
             block = with_ends(block, self.current.result, bool(self.counters), self.capabilities)
         if not self.capabilities.unreachable_statements:
-            last = next((index for index, stmt in enumerate(block) if isinstance(stmt, _JUMPS)), len(block))
+            last = next((index for index, stmt in enumerate(block) if _jumps(stmt)), len(block))
             block = block if last + 1 >= len(block) else block[: last + 1]
         return super().block(block)
 
