@@ -1,4 +1,4 @@
-"""Operations on memory that invocations of a compute shader share: atomics, barriers, the length of a buffer.
+"""Operations on memory that invocations share: atomics, barriers, the length of a buffer, texels of images.
 
 They are statements (`nodes.MemoryOperation`), as they write memory or wait; the table of builtins has functions of
 values alone. A text has `{0}` for the place, `{1}` and `{2}` for the values, and `{result}` for the variable that takes
@@ -32,10 +32,20 @@ class MemoryRow(NamedTuple):
     """Whether some language has it only with a result."""
     uniform_flow: bool = False
     """All invocations of a workgroup must reach it: control flow must be uniform."""
+    image: bool = False
+    """Whether the place is an image."""
+    reads_only: bool = False
+    """Whether it leaves the place as it is."""
     orders: tuple[str, ...] = ()
     """The memory that it orders: shared, buffer. Of a barrier without control it orders that alone."""
     texts: Mapping[str, str] = {}
-    """Language → its text. WGSL and Metal have no barrier of memory alone: there the invocations wait, too."""
+    """Language → its text. WGSL and Metal have no barrier of memory alone: there the invocations wait, too. That of an
+    image may depend on it: `wgsl-2DArray`, and `hlsl-one` for a format of one number."""
+
+    @property
+    def is_atomic(self) -> bool:
+        """Whether it works on a number in shared memory or in a storage buffer."""
+        return self.values > 0 and not self.image
 
 
 def _atomic(
@@ -49,6 +59,15 @@ def _atomic(
         "metal": f"{{into}}{metal_name}(&{{0}}, {args}, memory_order_relaxed)",
     }
     return MemoryRow(name, doc, values, needs_result=needs_result, texts={**texts, **other})
+
+
+def _image_atomic(name: str, hlsl: str, values: int = 1) -> MemoryRow:
+    args = ", ".join([f"{{{index}}}" for index in range(1, values + 2)])
+    new = ", ".join([f"{{{index}}}" for index in range(2, values + 2)])
+    texts = {"glsl": f"{{into}}image{name}({{0}}, {args})", "hlsl": f"{hlsl}({{0}}[{{1}}], {new}{{also}})"}
+    doc = f"As {name[0].lower()}{name[1:]}, of a texel; gives the old value."
+    needs_result = name in ("AtomicExchange", "AtomicCompSwap")
+    return MemoryRow(f"image{name}", doc, values + 1, image=True, needs_result=needs_result, texts=texts)
 
 
 def _barrier(name: str, doc: str, hlsl: str, wgsl: str, orders: tuple[str, ...], uniform: bool = False) -> MemoryRow:
@@ -87,7 +106,7 @@ ROWS = (
         "memoryBarrierBuffer", "Orders storage buffers.", "DeviceMemoryBarrier()", "storageBarrier()", ("buffer",),
     ),
     _barrier(
-        "memoryBarrierImage", "Orders images, which are not translated.", "DeviceMemoryBarrier()", "storageBarrier()",
+        "memoryBarrierImage", "Orders images.", "DeviceMemoryBarrier()", "storageBarrier()",
         ("buffer",),
     ),
     _barrier("memoryBarrier", "Orders all memory.", "AllMemoryBarrier()", "storageBarrier()", ("shared", "buffer")),
@@ -96,7 +115,56 @@ ROWS = (
         ("shared", "buffer"),
     ),
     MemoryRow(
-        "arrayLength", "How many elements a buffer's last member has.",
+        "imageLoad", "The texel of an image.", 1, image=True, reads_only=True, needs_result=True,
+        texts={
+            "glsl": "{result} = imageLoad({0}, {1})",
+            "wgsl": "{result} = textureLoad({0}, {1})",
+            "wgsl-2DArray": "{result} = textureLoad({0}, {1}.xy, {1}.z)",
+            "hlsl": "{result} = {0}[{1}]",
+            "hlsl-one": "{result} = {type}({0}[{1}], 0, 0, 1)",
+            "metal": "{result} = {0}.read(uint2({1}))",
+            "metal-3D": "{result} = {0}.read(uint3({1}))",
+            "metal-2DArray": "{result} = {0}.read(uint2({1}.xy), uint({1}.z))",
+        },
+    ),
+    MemoryRow(
+        "imageStore", "Sets a texel of an image.", 2, returns=False, image=True,
+        texts={
+            "glsl": "imageStore({0}, {1}, {2})",
+            "wgsl": "textureStore({0}, {1}, {2})",
+            "wgsl-2DArray": "textureStore({0}, {1}.xy, {1}.z, {2})",
+            "hlsl": "{0}[{1}] = {2}",
+            "hlsl-one": "{0}[{1}] = ({2}).x",
+            "metal": "{0}.write({2}, uint2({1}))",
+            "metal-3D": "{0}.write({2}, uint3({1}))",
+            "metal-2DArray": "{0}.write({2}, uint2({1}.xy), uint({1}.z))",
+        },
+    ),
+    MemoryRow(
+        "imageSize", "The size of an image, and its layers.", image=True, reads_only=True, needs_result=True,
+        texts={
+            "glsl": "{result} = imageSize({0})",
+            "wgsl": "{result} = {type}(textureDimensions({0}))",
+            "wgsl-2DArray": "{result} = {type}(vec2i(textureDimensions({0})), i32(textureNumLayers({0})))",
+            "hlsl": "uint2 {free};\n{0}.GetDimensions({free}.x, {free}.y);\n{result} = {type}({free})",
+            "hlsl-3D": "uint3 {free};\n{0}.GetDimensions({free}.x, {free}.y, {free}.z);\n{result} = {type}({free})",
+            "hlsl-2DArray": "uint3 {free};\n{0}.GetDimensions({free}.x, {free}.y, {free}.z);\n"
+            "{result} = {type}({free})",
+            "metal": "{result} = {type}({0}.get_width(), {0}.get_height())",
+            "metal-3D": "{result} = {type}({0}.get_width(), {0}.get_height(), {0}.get_depth())",
+            "metal-2DArray": "{result} = {type}({0}.get_width(), {0}.get_height(), {0}.get_array_size())",
+        },
+    ),
+    _image_atomic("AtomicAdd", "InterlockedAdd"),
+    _image_atomic("AtomicMin", "InterlockedMin"),
+    _image_atomic("AtomicMax", "InterlockedMax"),
+    _image_atomic("AtomicAnd", "InterlockedAnd"),
+    _image_atomic("AtomicOr", "InterlockedOr"),
+    _image_atomic("AtomicXor", "InterlockedXor"),
+    _image_atomic("AtomicExchange", "InterlockedExchange"),
+    _image_atomic("AtomicCompSwap", "InterlockedCompareExchange", 2),
+    MemoryRow(
+        "arrayLength", "How many elements a buffer's last member has.", reads_only=True,
         texts={"glsl": "{into}{0}.length()", "wgsl": "{into}i32(arrayLength(&{0}))"},
     ),
 )  # fmt: skip

@@ -306,12 +306,12 @@ class Constant(NamedTuple):
 class Variable(NamedTuple):
     """A module variable: each run of a shader has its own.
 
-    `storage` is private, in (an input of the stage, read-only), out (an output), or of a compute shader shared (by its
-    workgroup) or buffer (a storage buffer; its type is the struct of its members). A private one may have a `value` of
-    constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''. `interpolation`
-    is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer its binding. `access` is that
-    of a buffer: readonly, writeonly or ''; `layout` is std430 or std140. `block` is the block of inputs or outputs that
-    declares it, or ''.
+    `storage` is private, in (an input of the stage, read-only), out (an output), image, or of a compute shader shared
+    (by its workgroup) or buffer (a storage buffer; its type is the struct of its members). A private one may have a
+    `value` of constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''.
+    `interpolation` is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer or image its
+    binding. `access` is that of these: readonly, writeonly or ''; `layout` is std430 or std140, of an image its format,
+    or ''. `block` is the block of inputs or outputs that declares it, or ''.
     """
 
     name: str

@@ -64,11 +64,20 @@ class Sampler(NamedTuple):
     shadow: bool = False
 
 
+class Image(NamedTuple):
+    """A texture whose texels a shader loads and stores by their places, without a sampler."""
+
+    dim: str
+    """2D or 3D"""
+    kind: str = "float"
+    array: bool = False
+
+
 class Void(NamedTuple):
     """The result of a function that returns nothing."""
 
 
-Type: TypeAlias = Scalar | Vector | Matrix | Array | Struct | Sampler | Void
+Type: TypeAlias = Scalar | Vector | Matrix | Array | Struct | Sampler | Image | Void
 
 FLOAT, INT, UINT, BOOL, VOID = Scalar("float"), Scalar("int"), Scalar("uint"), Scalar("bool"), Void()
 
@@ -93,8 +102,15 @@ for _kind, _prefix in (("int", "i"), ("uint", "u")):
         BY_NAME[f"{_prefix}sampler{_dim}"] = Sampler(_dim, _kind)
     BY_NAME[f"{_prefix}sampler2DArray"] = Sampler("2D", _kind, array=True)
 
+IMAGES: dict[str, Image] = {
+    f"{prefix}image{dim}{'Array' if array else ''}": Image(dim, kind, array)
+    for prefix, kind in (("", "float"), ("i", "int"), ("u", "uint"))
+    for dim, array in (("2D", False), ("3D", False), ("2D", True))
+}
+"""The names of images, which are variables of whole shaders alone."""
+
 _NAMES: dict[Type, str] = {}
-for _name, _type in BY_NAME.items():
+for _name, _type in (*BY_NAME.items(), *IMAGES.items()):
     _NAMES.setdefault(_type, _name)
 
 VEC2, VEC3, VEC4 = Vector("float", 2), Vector("float", 3), Vector("float", 4)

@@ -156,7 +156,7 @@ class _Verifier:
     def variable(self, variable: ir.Variable) -> None:
         name, span = variable.name, variable.span
         self.type(variable.type, span, (Sampler, type(VOID)))
-        if variable.storage not in ("private", "in", "out", "shared", "buffer"):
+        if variable.storage not in ("private", "in", "out", "shared", "buffer", "image"):
             self.report(span, f"'{variable.storage}' is not a storage")
         if variable.interpolation not in ("", "flat", "noperspective", "centroid"):
             self.report(span, f"'{variable.interpolation}' is not an interpolation")

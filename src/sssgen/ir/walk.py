@@ -7,6 +7,7 @@ from operator import itemgetter
 from typing import Any, TypeVar
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.memory_operations import MEMORY
 
 _Part = TypeVar("_Part", bound=ir.Expr)
 
@@ -77,7 +78,7 @@ def written_places(stmt: ir.Stmt) -> tuple[ir.Expr, ...]:
     if type(stmt) is ir.Assign:
         return (stmt.target,)
     if isinstance(stmt, ir.MemoryOperation):
-        places = stmt.args[: stmt.name != "arrayLength"]  # which reads
+        places = stmt.args[: not MEMORY[stmt.name].reads_only]
         return (*places, stmt.result) if stmt.result is not None else places
     return ()
 

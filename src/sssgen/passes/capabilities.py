@@ -8,6 +8,8 @@ from typing import NamedTuple
 class Capabilities(NamedTuple):
     """The capabilities of one language: `[capabilities]` of its descriptor. What is not declared is False."""
 
+    any_images: bool = False
+    """An image may have any format, or none if it is only written, may be read and written."""
     array_attributes: bool = False
     """An attribute of a vertex shader may be an array."""
     array_constructors: bool = False
@@ -39,6 +41,8 @@ class Capabilities(NamedTuple):
     hiding: bool = False
     """A function's parameters and variables may have the names of uniforms, constants and module variables that it
     does not use."""
+    image_atomics: bool = False
+    """Atomics work on images."""
     implicit_levels: bool = False
     """Derivatives, and texture reads that need them, are allowed in non-uniform control flow and in vertex shaders."""
     integer_division: bool = False
@@ -94,6 +98,8 @@ class Capabilities(NamedTuple):
     """A storage buffer may have the layout std140 where that is not std430."""
     storage_buffers: bool = False
     """There are storage buffers."""
+    storage_images: bool = False
+    """There are images whose texels a shader loads and stores."""
     struct_choices: bool = False
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False

@@ -59,7 +59,7 @@ def _target(text: str, holds: Callable[[Capabilities], bool]) -> Condition:
 _SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
 _COMPUTE = Condition("it is a compute shader", lambda state: bool(state.module.workgroup))
 _MEMORY = Condition(
-    "it is a compute shader or has storage buffers",
+    "it is a compute shader, or has storage buffers or images",
     lambda state: bool(state.module.workgroup) or has_buffers(state.module),
 )
 _NO_MAIN = Condition(
@@ -187,7 +187,7 @@ TARGET: tuple[Pass, ...] = (
     Pass(
         "memory",
         steps.check_shared_memory,
-        "refuse storage buffers with another layout, and copies of atomics",
+        "refuse storage buffers and images that the target lacks, and copies of atomics",
         _MEMORY,
     ),
     Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _COMPUTE),

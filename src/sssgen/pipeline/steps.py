@@ -24,6 +24,7 @@ from sssgen.passes.prune import prune
 from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.atomic_places import check_atomics
 from sssgen.passes.stage.host_uniforms import group_count_to_uniform, lengths_to_uniforms
+from sssgen.passes.stage.images import check_images
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
 from sssgen.passes.stage.interface_arrays import interface_arrays
 from sssgen.passes.stage.stage_interface import (
@@ -270,6 +271,7 @@ def check_shared_memory(state: State) -> Module:
     if not state.target.capabilities.plain_atomics:
         check_atomics(state.module)
     module = check_buffers(state.module, state.target.capabilities)
+    module = check_images(module, state.form, state.target.capabilities)
     is_reader = state.form == "vertex" and not state.target.capabilities.vertex_buffer_writes
     return read_buffers(module) if is_reader else module
 

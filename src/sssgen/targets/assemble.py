@@ -364,7 +364,7 @@ def _context(
         "library": [function.name for function in program.module.functions],
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,
-        "storage_buffers": bool(printer.buffers),
+        "storage_buffers": bool(printer.buffers or printer.images),
         "numbers_samples": any(variable.builtin == "gl_SampleID" for variable in program.module.variables),
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         BufferRecord,
         DeclarationRecord,
         EmbeddedExpressions,
+        ImageRecord,
         Kernel,
         NameRecord,
         ParameterRecord,
@@ -194,7 +195,14 @@ def _compute(target: Target, program: Program) -> Kernel:
                 "least_size": extent(variable.type, variable.layout).size, "members": members,
             }
         )  # fmt: skip
-    return {**size, "storage_buffers": buffers}
+    images: list[ImageRecord] = [
+        {
+            "name": variable.name, "type": spell(variable.type), "format": variable.layout,
+            "access": variable.access or "read_write", "binding": {"binding": printer.image_binding(variable)},
+        }
+        for variable in printer.images
+    ]  # fmt: skip
+    return {**size, "storage_buffers": buffers, **({"storage_images": images} if images else {})}
 
 
 def _conventions(target: Target) -> dict[str, str | list[float]]:

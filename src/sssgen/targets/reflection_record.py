@@ -178,6 +178,19 @@ class BufferRecord(TypedDict):
     members: list[BufferMember]
 
 
+class ImageRecord(TypedDict):
+    """An image whose texels the shader loads or stores."""
+
+    name: str
+    type: str
+    """As in GLSL."""
+    format: str
+    """The format of GLSL, such as rgba8, or ''."""
+    access: str
+    """readonly, writeonly or read_write."""
+    binding: dict[str, int]
+
+
 class Argument(TypedDict):
     """A parameter of an assembled function, as templates see it: what the shell passes for it."""
 
@@ -249,6 +262,8 @@ class Kernel(TypedDict, total=False):
     workgroup_size: list[int]
     """Three numbers of invocations, of a compute shader."""
     storage_buffers: list[BufferRecord]
+    storage_images: NotRequired[list[ImageRecord]]
+    """Where the shader has any."""
 
 
 class ShellPart(TypedDict, total=False):

@@ -57,6 +57,9 @@ def verify_compute(
     `shown` is the text's name in messages; without `machines` the back ends gl, webgpu and metal are started here.
     """
     module = load_glsl_text(text, shown).module
+    if image := next((variable for variable in module.variables if variable.storage == "image"), None):
+        message = f"'{image.name}' is an image: compute shaders with images are not verified"
+        raise failure(message, "verify a shader that reads textures and writes storage buffers", shown)
     started: dict[str, BackendProcess] = dict(machines or {})
     missing: dict[str, str] = {}
     try:

@@ -67,14 +67,14 @@ def probe_functions(module: Module, functions: list[Function], text: str) -> lis
         prefix, count = f"sssgen{count}_", count + 1
     effect_of = effects(module)
     variables = {variable.name: variable.type for variable in module.variables}
-    buffers = {variable.name for variable in module.variables if variable.storage == "buffer"}
+    buffers = {variable.name for variable in module.variables if variable.storage in ("buffer", "image")}
     probes = []
     for number, function in enumerate(functions):
         effect = effect_of.get(function.key, NONE)
         read = {name: variables[name] for name in sorted(effect.reads)}
         written = {name: variables[name] for name in sorted(effect.writes)}
         if buffers & (read.keys() | written.keys()):
-            reason = "it reads or writes storage buffers, which only compute shaders are verified with"
+            reason = "it reads or writes storage buffers or images, which functions are not verified with"
             probes.append(FunctionProbes(function, reason=reason))
             continue
         probes.append(_probe_function(function, prefix, f"{prefix}probe_{number}", read, written))

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
-from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
+from sssgen.ir.types import IMAGES, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
 from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.declared_names import check_global_name, declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.image_checker import declare_image
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
@@ -61,7 +62,9 @@ class GlobalChecker:
             declare_struct(context, declaration.type.struct)
         if "invariant" in keywords and ("uniform" in keywords or "const" in keywords):
             raise context.fail(declaration.qualifiers.span, "only what stages pass can be invariant")
-        if "uniform" in keywords:
+        if "uniform" in keywords and context.plain and declaration.type.name in IMAGES:
+            declare_image(self.expressions, declaration, external.doc)
+        elif "uniform" in keywords:
             for declarator in declaration.declarators:
                 elements = self.interface.textures(declaration, declarator)
                 for index, element in enumerate(elements):

@@ -13,11 +13,14 @@ from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
 from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.image_checker import image_arguments
 from sssgen.lang.check.name_scope import GlobalValue, Scopes
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
+_RESULT_NAMES = {"arrayLength": "count", "imageLoad": "texel", "imageSize": "size"}
+"""Operation → what a variable with its result is called; that of the others is the old value."""
 _SIZES = ("local_size_x", "local_size_y", "local_size_z")
 MAX_INVOCATIONS = 1024
 """Of a workgroup: what OpenGL and D3D guarantee (WebGPU: 256, unless the device is asked for more)."""
@@ -129,6 +132,8 @@ class MemoryChecker:
         count = row.has_place + row.values
         if len(call.args) != count:
             raise context.fail(call.span, f"{row.name} takes {count} arguments, but gets {len(call.args)}")
+        if row.image:
+            return self.result(row, *image_arguments(self.expressions, row, call), call)
         if row.has_place:
             self.expressions.check_place(call.args[0])
         args = self.expressions.operands(call.args, {0} if row.has_place else ())
@@ -149,20 +154,21 @@ class MemoryChecker:
                 for index, (arg, written) in enumerate(zip(args[1:], call.args[1:], strict=True))
             ]
             values = (place, *converted)
-        return self.result(row, values, call)
+        return self.result(row, values, values[0].type if values else VOID, call)
 
     def length(self, value: ir.Expr, call: s.CallOf) -> Typed:
         """The length of an array at the end of a storage buffer."""
-        return self.result(MEMORY["arrayLength"], (value,), call)
+        return self.result(MEMORY["arrayLength"], (value,), INT, call)
 
-    def result(self, row: MemoryRow, values: tuple[ir.Expr, ...], call: s.CallOf) -> Typed:
+    def result(self, row: MemoryRow, values: tuple[ir.Expr, ...], type_: Type, call: s.CallOf) -> Typed:
+        """The variable of this type that takes the result of an operation, which becomes a statement."""
         function, span = self.context.function, call.span
         if not row.has_place:
             self.context.barriers.append(span)
         result = None
         if row.returns and (row.needs_result or id(call) not in self.expressions.dropped):
-            type_ = values[0].type if row.values else INT
-            result = function.temporary("old" if row.values else "count", None, type_=type_)
+            name = _RESULT_NAMES.get(row.name, "old")
+            result = function.temporary(name, None, type_=type_)
         function.prelude.append(ir.MemoryOperation(row.name, values, result, span))
         return Typed(result if result is not None else ir.Literal(VOID, 0, span))
 

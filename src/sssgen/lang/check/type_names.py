@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sssgen.ir.types import BY_NAME, Array, Matrix, Sampler, Type, Void, spell, unnested
+from sssgen.ir.types import BY_NAME, IMAGES, Array, Matrix, Sampler, Type, Void, spell, unnested, with_article
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
@@ -23,6 +23,9 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
         type_ = struct
     elif name.name in q.QUANTITIES and not context.plain:
         type_, quantity = q.QUANTITIES[name.name], name.name
+    elif context.plain and name.name in IMAGES:
+        hint = "declare it at file scope as a uniform, and name it where it is read or written"
+        raise context.fail(name.span, f"{with_article(name.name)} is no parameter, variable or member here", hint)
     elif context.plain and (why := why_not(name.name)):
         raise context.fail(name.span, f"'{name.name}' cannot be translated: {why}")
     else:

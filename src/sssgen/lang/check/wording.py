@@ -79,7 +79,7 @@ def overload_hint(name: str, args: list[ir.Expr]) -> str:
 
 _UNSUPPORTED = (
     (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
-    (r"[iu]?image\w+", "images belong to compute shaders"),
+    (r"[iu]?image\w+", "images are image2D, image3D and image2DArray here, of float, int and uint"),
     (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU has no such textures"),
     (r"atomic_uint", "atomics belong to compute shaders"),
 )

@@ -45,7 +45,7 @@ def atomic_places(module: Module) -> frozenset[Memory]:
         memory_of(stmt.args[0], passed_variables(function))
         for function in module.functions
         for stmt in statements(function.body or ())
-        if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].values
+        if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].is_atomic
     )
 
 
@@ -60,7 +60,7 @@ def _errors(module: Module) -> Iterator[Unsupported]:
     places = atomic_places(module) - {()}
     for function in module.functions:
         for stmt in statements(function.body or ()):
-            if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].values and not memory_of(stmt.args[0]):
+            if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].is_atomic and not memory_of(stmt.args[0]):
                 hint = "atomics of this target work on whole numbers in memory: declare an array of uint"
                 yield Unsupported(f"{stmt.name} works on a component of a vector", stmt.args[0].span, (), hint)
     holders = {place[0]: place[1] for place in places if len(place) == 2}

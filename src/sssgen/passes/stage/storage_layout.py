@@ -61,8 +61,8 @@ def _up(offset: int, alignment: int) -> int:
 
 
 def has_buffers(module: Module) -> bool:
-    """Whether a module has storage buffers."""
-    return any(variable.storage == "buffer" for variable in module.variables)
+    """Whether a module has storage buffers or images."""
+    return any(variable.storage in ("buffer", "image") for variable in module.variables)
 
 
 def byte_buffers(module: Module, capabilities: Capabilities) -> list[Variable]:

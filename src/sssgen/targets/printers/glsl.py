@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of
+from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of, spell
 from sssgen.passes.stage.stage_interface import COLORS, interpolation
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, with_doc, wrap
@@ -49,6 +49,8 @@ class GlslPrinter(Printer):
             return super().print_variable(variable)
         if variable.storage == "buffer":
             return self.with_comments(variable, self.buffer(variable))
+        if variable.storage == "image":
+            return self.with_comments(variable, [Line(self.image(variable), variable.span)])
         passed = self.stage is not None and (self.stage.kind, variable.storage) in _PASSED
         word = interpolation(variable) if passed else variable.interpolation
         words = [word] if word and (word != "noperspective" or self.target.capabilities.noperspective) else []
@@ -62,6 +64,12 @@ class GlslPrinter(Printer):
         head = f"layout({variable.layout}, binding = {self.buffer_binding(variable)}) {access}buffer {struct.name} {{"
         fields = [Line(f"    {self.variable(field.type, field.name)};", variable.span) for field in struct.fields]
         return [Line(head, variable.span), *fields, Line(f"}} {variable.name};")]
+
+    def image(self, variable: ir.Variable) -> str:
+        """The declaration of an image."""
+        items = [*([variable.layout] if variable.layout else []), f"binding = {self.image_binding(variable)}"]
+        access = f"{variable.access} " if variable.access else ""
+        return f"layout({', '.join(items)}) {access}uniform {spell(variable.type)} {variable.name};"
 
     def print_layout(self) -> list[Line]:
         if not self.module.workgroup:

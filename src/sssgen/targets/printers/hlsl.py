@@ -14,7 +14,9 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import FLOAT, INT, Array, Matrix, Sampler, Scalar, Struct, Vector, kind_of
+from sssgen.ir.image_formats import FORMATS
+from sssgen.ir.memory_operations import MEMORY
+from sssgen.ir.types import FLOAT, INT, Array, Image, Matrix, Sampler, Scalar, Struct, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
@@ -154,6 +156,8 @@ class HlslPrinter(BytePrinter):
         if variable.storage == "shared":
             text = f"groupshared {self.variable(variable.type, variable.name)};"
             return self.with_comments(variable, [Line(text, variable.span)])
+        if variable.storage == "image":
+            return self.with_comments(variable, [Line(self.image(variable), variable.span)])
         if variable.storage != "buffer":
             return super().print_variable(variable)
         register, written = ("t", "") if variable.access == "readonly" else ("u", "RW")
@@ -167,6 +171,33 @@ class HlslPrinter(BytePrinter):
         place = f"register({register}{first + self.buffer_binding(variable)})"
         text = f"{kind} {variable.name} : {place};"
         return self.with_comments(variable, [Line(text, variable.span)])
+
+    def image(self, variable: ir.Variable) -> str:
+        """The declaration of an image."""
+        image = variable.type
+        assert isinstance(image, Image)
+        shape, form = f"{image.dim}{'Array' if image.array else ''}", FORMATS.get(variable.layout)
+        norm = f"{form.norm} " if form is not None and form.norm else ""
+        texel = f"{norm}{image.kind}{'' if form is not None and form.numbers == 1 else '4'}"
+        return f"RWTexture{shape}<{texel}> {variable.name} : register(u{self.image_binding(variable)});"
+
+    def image_binding(self, image: ir.Variable) -> int:
+        """The binding of the source, or the next one that neither a storage buffer nor another image has."""
+        taken = {self.buffer_binding(buffer) for buffer in self.buffers if buffer.access != "readonly"}
+        bindings: dict[str, int] = {}
+        for each in self.images:
+            binding = max(each.location, 0)
+            while binding in taken:
+                binding += 1
+            taken.add(binding)
+            bindings[each.name] = binding
+        return bindings[image.name]
+
+    def memory_text(self, stmt: ir.MemoryOperation) -> str:
+        image = stmt.args[0] if stmt.args else None
+        form = next((FORMATS.get(each.layout) for each in self.images if each.name == getattr(image, "name", "")), None)
+        text = MEMORY[stmt.name].texts.get("hlsl-one") if form is not None and form.numbers == 1 else None
+        return text or super().memory_text(stmt)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
         """An expression; the member of a storage buffer is the buffer, or its first element."""

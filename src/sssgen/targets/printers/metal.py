@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import Array, Sampler, Struct, Type, Vector, unnested
+from sssgen.ir.types import Array, Image, Sampler, Struct, Type, Vector, unnested
 from sssgen.passes.stage.storage_layout import offsets
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.atomic_printer import AtomicPrinter
@@ -25,6 +25,7 @@ from sssgen.targets.uniform_layout import Member
 if TYPE_CHECKING:
     from sssgen.targets.reflection_record import TextureBinding
 
+_ACCESS = {"readonly": "read", "writeonly": "write", "": "read_write"}
 ARRAY = "fixed_array"
 
 
@@ -106,9 +107,29 @@ class MetalPrinter(AtomicPrinter):
 
     def reference(self, variable: ir.Variable, name: str) -> str:
         """A parameter for a storage buffer or shared memory."""
+        if isinstance(variable.type, Image):
+            return f"{self.image(variable.type, variable.access)} {name}"
         space = {"shared": "threadgroup", "buffer": "device"}[variable.storage]
         readonly = "const " if variable.access == "readonly" else ""
         return f"{readonly}{space} {self.stored_type(variable.type, (variable.name,))}& {name}"
+
+    def image(self, image: Image, access: str) -> str:
+        """The type of an image."""
+        shape = f"{image.dim.lower()}{'_array' if image.array else ''}"
+        return f"texture{shape}<{image.kind}, access::{_ACCESS[access]}>"
+
+    def memory(self, stmt: ir.MemoryOperation) -> str:
+        """An operation on memory; what a thread stored into an image it loads only behind a fence."""
+        text = super().memory(stmt)
+        image = stmt.args[0] if stmt.args else None
+        name = image.name if isinstance(image, ir.Global | ir.Local) else ""
+        loaded = stmt.name == "imageStore" and any(each.name == name and not each.access for each in self.images)
+        return f"{text}\n{name}.fence();" if loaded else text
+
+    def image_binding(self, image: ir.Variable) -> int:
+        """Behind those of the textures."""
+        textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
+        return textures + self.images.index(image)
 
     def shell_argument(self, uniform: ir.Local, param: ir.Param) -> str:
         return self.argument(uniform, param) if isinstance(param.type, Sampler) else f"material.{uniform.name}"
@@ -148,6 +169,8 @@ class MetalPrinter(AtomicPrinter):
             sampler = f"{self.sampler_type(texture.type)} {self.sampler(texture.name)}"
             inputs += [f"{self.type(texture.type)} {texture.name} [[texture({index})]]"]
             inputs += [f"{sampler} [[sampler({index})]]"]
+        inputs += [f"{self.reference(image, image.name)} [[texture({self.image_binding(image)})]]"
+                   for image in self.images]  # fmt: skip
         shared = [variable for variable in self.module.variables if variable.storage == "shared"]
         declared = [f"threadgroup {self.stored_type(variable.type, (variable.name,))} {variable.name};"
                     for variable in shared]  # fmt: skip

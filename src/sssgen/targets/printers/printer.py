@@ -14,7 +14,21 @@ from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
-from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
+from sssgen.ir.types import (
+    FLOAT,
+    INT,
+    UINT,
+    VOID,
+    Array,
+    Image,
+    Sampler,
+    Scalar,
+    Struct,
+    Type,
+    components,
+    spell,
+    unnested,
+)
 from sssgen.passes.scopes import claim, declared
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
@@ -77,6 +91,7 @@ class Printer:
         self.stage: Stage | None = None
         """The interface of a whole shader."""
         self.buffers = [variable for variable in module.variables if variable.storage == "buffer"]
+        self.images = [variable for variable in module.variables if variable.storage == "image"]
 
     # Types and literals
 
@@ -293,13 +308,21 @@ class Printer:
 
     def memory(self, stmt: ir.MemoryOperation) -> str:
         """An operation on shared memory, by its row's text for this language."""
-        pattern = MEMORY[stmt.name].texts[self.target.language]
+        pattern = self.memory_text(stmt)
         result = self.expr(stmt.result) if stmt.result is not None else ""
         into, also = (f"{result} = ", f", {result}") if result else ("", "")
-        free = self.free_name("swapped") if "{free}" in pattern else ""
+        type_ = self.type(stmt.result.type) if stmt.result is not None else ""
+        free = self.free_name("extent" if MEMORY[stmt.name].image else "swapped") if "{free}" in pattern else ""
         args = [*map(self.place, stmt.args[:1]), *map(self.expr, stmt.args[1:])]
-        text = pattern.format(*args, result=result, into=into, also=also, free=free)
+        text = pattern.format(*args, result=result, into=into, also=also, free=free, type=type_)
         return text if text.endswith("}") else f"{text};"
+
+    def memory_text(self, stmt: ir.MemoryOperation) -> str:
+        """The row's text for this language, and for the kind of image."""
+        texts, language = MEMORY[stmt.name].texts, self.target.language
+        image = stmt.args[0].type if stmt.args else VOID
+        shape = f"{image.dim}{'Array' if image.array else ''}" if isinstance(image, Image) else ""
+        return texts.get(f"{language}-{shape}", texts[language])
 
     def place(self, expr: ir.Expr) -> str:
         """A place in memory, without reading it."""
@@ -417,6 +440,10 @@ class Printer:
     def buffer_binding(self, buffer: ir.Variable) -> int:
         """The binding of a storage buffer: that of the source, or else its number."""
         return buffer.location if buffer.location >= 0 else self.buffers.index(buffer)
+
+    def image_binding(self, image: ir.Variable) -> int:
+        """The binding of an image: that of the source, or else its number."""
+        return image.location if image.location >= 0 else self.images.index(image)
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The declarations of the uniforms without textures."""

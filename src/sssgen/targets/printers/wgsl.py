@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.image_formats import FORMATS
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
+from sssgen.ir.types import VOID, Array, Image, Sampler, Struct, Type
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.scopes import assigned, outs_of
 from sssgen.passes.uniform_blocks import block_type
@@ -23,6 +24,7 @@ from sssgen.targets.uniform_layout import Member, padding
 if TYPE_CHECKING:
     from sssgen.targets.reflection_record import TextureBinding
 
+_ACCESS = {"readonly": "read", "writeonly": "write", "": "read_write"}
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
 
@@ -130,6 +132,20 @@ class WgslPrinter(AtomicPrinter):
         textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
         return self.target.bindings.first + 1 + 2 * textures + self.buffers.index(buffer)
 
+    def image_binding(self, image: ir.Variable) -> int:
+        """Behind those of the storage buffers."""
+        textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
+        return self.target.bindings.first + 1 + 2 * textures + len(self.buffers) + self.images.index(image)
+
+    def print_image(self, variable: ir.Variable) -> list[Line]:
+        image = variable.type
+        assert isinstance(image, Image)
+        place = f"@group({self.group}) @binding({self.image_binding(variable)})"
+        shape = f"{image.dim.lower()}{'_array' if image.array else ''}"
+        texel = f"{FORMATS[variable.layout].webgpu}, {_ACCESS[variable.access]}"
+        text = f"{place} var {variable.name}: texture_storage_{shape}<{texel}>;"
+        return self.with_comments(variable, [Line(text, variable.span)])
+
     def print_variable(self, variable: ir.Variable) -> list[Line]:
         if variable.storage in ("shared", "buffer"):
             text = f"{variable.name}: {self.stored_type(variable.type, (variable.name,))};"
@@ -138,6 +154,8 @@ class WgslPrinter(AtomicPrinter):
             place = f"@group({self.group}) @binding({self.buffer_binding(variable)})"
             access = "read" if variable.access == "readonly" else "read_write"
             return self.with_comments(variable, [Line(f"{place} var<storage, {access}> {text}", variable.span)])
+        if variable.storage == "image":
+            return self.print_image(variable)
         declared = f"var<private> {self.variable(variable.type, variable.name)}"
         value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
         return self.with_comments(variable, wrap(f"{declared}{value};", variable.span))
