@@ -152,3 +152,34 @@ def test_an_atomic_of_a_component_beside_a_copied_array() -> None:
     )
     with pytest.raises(SssgenError, match="works on a component of a vector"):
         emitted(text, "a.comp", "wgsl")
+
+
+def test_swizzles_of_a_number() -> None:
+    head = "#version 420\nin float x;\nout vec4 color;\n"
+    text = first(emitted(f"{head}void main() {{ color = vec4((x * 2.0).xxx, 3u.r); }}", "a.frag", "wgsl"))
+    assert "color = vec4f(vec3f(x * 2.0), 3.0);" in text
+    with pytest.raises(SssgenError, match="a float has no member 'xy'"):
+        load(f"{head}void main() {{ color.rg = x.xy; }}", "a.frag")
+    mobile = "#version 300 es\nprecision highp float;\nfloat f(float x) { return x.x; }\n"
+    with pytest.raises(SssgenError, match="a float has no member 'x'"):
+        load(mobile, "a.frag")
+
+
+def test_global_variables_begin_with_calls() -> None:
+    """main() sets them, and those after them that are not constant, in their order."""
+    text = """#version 330
+uniform float time;
+out vec4 color;
+float first = time;
+float twice(float x) { return 2.0 * x; }
+float second = twice(first);
+float third = second + first;
+float fourth = 4.0;
+void main() { float first = third; color = vec4(first, second, third, fourth); }
+"""
+    emitted_text = first(emitted(text, "a.frag", "wgsl"))
+    order = ["first = material.time;", "second = twice(first);", "third = second + first;", "first_ = third"]
+    places = [emitted_text.index(part) for part in order]
+    assert places == sorted(places) and "fourth: f32 = 4.0;" in emitted_text
+    with pytest.raises(SssgenError, match="no main.. that could set it"):
+        load("#version 330\nfloat one() { return 1.0; }\nfloat x = one();\n", "a.frag")

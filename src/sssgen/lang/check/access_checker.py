@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type, swizzle_type
-from sssgen.ir.types import INT, UINT, Array, Scalar, Struct, Vector, spell
+from sssgen.ir.types import INT, UINT, Array, Scalar, Struct, Vector, spell, vector_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int, integer
 from sssgen.lang.check.context import Typed
@@ -16,6 +16,8 @@ from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import did_you_mean
 
 _SWIZZLES = ("xyzw", "rgba", "stpq")
+_OF_SCALARS = frozenset(letters[0] * count for letters in _SWIZZLES for count in (1, 2, 3, 4))
+"""The swizzles of a number (GLSL 4.20, section 5.5)."""
 
 
 class AccessChecker:
@@ -103,8 +105,9 @@ class AccessChecker:
                     return Typed(ir.Member(field.type, value.expr, name, member.span), field.quantity)
             hint = did_you_mean(name, [field.name for field in type_.fields])
             raise context.fail(member.name.span, f"struct '{type_.name}' has no member '{name}'", hint)
-        if isinstance(type_, Scalar) and context.plain and name in ("x", "r", "s"):
-            return value
+        if isinstance(type_, Scalar) and context.plain and not context.es and name in _OF_SCALARS:
+            result = vector_of(type_.kind, len(name))
+            return value if result == type_ else Typed(ir.Construct(result, (value.expr,), member.span))
         if not isinstance(type_, Vector):
             raise context.fail(member.name.span, f"{a_type(type_)} has no member '{name}'")
         for letters in _SWIZZLES:

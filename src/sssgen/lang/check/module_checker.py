@@ -7,6 +7,7 @@ other, so their checkers find each other in tables (`methods`), which are comple
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
@@ -112,6 +113,8 @@ class ModuleChecker:
             except AlreadyReported:
                 context.faulty.update(_declared_names(external))
         functions = self.added | self.functions if context.plain else self.functions
+        with suppress(AlreadyReported):
+            functions = self.globals.interface.with_starts(functions)
         calls = calls_in(functions)
         report_recursion(functions, calls, context.reporter)
         if context.plain and not context.reporter.diagnostics:

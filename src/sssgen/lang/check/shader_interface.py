@@ -32,6 +32,8 @@ class ShaderInterface:
         self.context = expressions.context
         self.expressions = expressions
         self.vertex = self.context.language.vertex
+        self.starts: list[ir.Assign] = []
+        """What main() sets first: the variables whose values call functions, and later ones that are not constant."""
 
     def declare(self, declaration: s.Declaration, doc: str, block: str) -> None:
         """Declares inputs, outputs or private variables; `block` is the block that they are members of, or ''."""
@@ -72,6 +74,9 @@ class ShaderInterface:
                 raise context.fail(span, "what stages pass on has no initial value", "write it in main()")
             if value is not None and storage == "shared":
                 raise context.fail(span, "shared memory has no initial value", "write it in main(), before a barrier()")
+            if value is not None and (self.starts or _calls(value)) and not _is_constant(value):
+                self.starts.append(ir.Assign(ir.Global(type_, name, span), "", value, span))
+                value = None
             if storage in ("private", "shared"):
                 interpolation, location = "", -1
             variable = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
@@ -125,10 +130,22 @@ class ShaderInterface:
             return self.expressions.check_as(value, type_, quantity, f"'{name}'")
 
         expr, prelude = self.expressions.with_prelude(value, check)
-        if prelude or any(isinstance(part, ir.Call) for part in subexpressions(expr)):
+        if prelude or (self.context.es and _calls(expr)):
             hint = "set it at the beginning of main()"
             raise self.context.fail(value.span, "the initial value of a global variable cannot call functions", hint)
         return expr
+
+    def with_starts(self, functions: dict[str, ir.Function]) -> dict[str, ir.Function]:
+        """The functions with the values at the beginning of main() that call functions, and those after them."""
+        main = functions.get("main()")
+        if not self.starts:
+            return functions
+        if main is None:
+            message = (
+                "the initial value of a global variable calls a function, and there is no main() that could set it"
+            )
+            raise self.context.fail(self.starts[0].span, message)
+        return functions | {"main()": main._replace(body=(*self.starts, *(main.body or ())))}
 
     def storage(self, keywords: tuple[str, ...]) -> str:
         """private, in or out, from the qualifiers; for a varying also from the stage."""
@@ -311,3 +328,11 @@ class ShaderInterface:
                         message = f"'{declarator.name.text}' is already declared"
                         raise context.fail(declarator.name.span, message, "give the block an instance name")
                     context.aliases[declarator.name.text] = label.text
+
+
+def _calls(value: ir.Expr) -> bool:
+    return any(isinstance(part, ir.Call) for part in subexpressions(value))
+
+
+def _is_constant(value: ir.Expr) -> bool:
+    return not any(isinstance(part, ir.Call | ir.Global) for part in subexpressions(value))
