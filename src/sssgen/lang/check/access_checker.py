@@ -106,8 +106,8 @@ class AccessChecker:
             hint = did_you_mean(name, [field.name for field in type_.fields])
             raise context.fail(member.name.span, f"struct '{type_.name}' has no member '{name}'", hint)
         if isinstance(type_, Scalar) and context.plain and not context.es and name in _OF_SCALARS:
-            result = vector_of(type_.kind, len(name))
-            return value if result == type_ else Typed(ir.Construct(result, (value.expr,), member.span))
+            repeated = vector_of(type_.kind, len(name))
+            return value if repeated == type_ else Typed(ir.Construct(repeated, (value.expr,), member.span))
         if not isinstance(type_, Vector):
             raise context.fail(member.name.span, f"{a_type(type_)} has no member '{name}'")
         for letters in _SWIZZLES:
