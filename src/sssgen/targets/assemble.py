@@ -367,7 +367,7 @@ def _context(
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,
         "later_glsl": program.later_glsl or bool(printer.buffers or printer.images),
-        "numbers_samples": any(variable.builtin == "gl_SampleID" for variable in program.module.variables),
+        "numbers_samples": any(variable.builtin.startswith("gl_Sample") for variable in program.module.variables),
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 
