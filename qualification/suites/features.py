@@ -63,7 +63,7 @@ FEATURES = (
         "builtins of a fixed pipeline",
     ),
     _feature(
-        r"\binterpolateAt\w+|\btextureQueryLod\b|\btextureQueryLOD\b|\bsparse\w+ARB|\bgl_FragColor\b.*\bindex\b",
+        r"\binterpolateAt\w+|\btextureQueryLOD\b|\bsparse\w+ARB|\bgl_FragColor\b.*\bindex\b",
         "reads that WGSL lacks",
     ),
     _feature(r"layout\s*\([^)]*\b(?:index|xfb_\w+|stream|component)\s*=", "places within a location"),

@@ -55,8 +55,8 @@ OWN = {
 }
 REFUSED = {
     ("textureSize", "hlsl-dx9"), ("texelFetch", "hlsl-dx9"),
-    ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl"),
-    ("textureQueryLod", "glsl"), ("textureQueryLod", "wgsl"), ("textureQueryLod", "hlsl-dx9"),
+    ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl-dx9"),
+    ("textureQueryLod", "glsl"), ("textureQueryLod", "hlsl-dx9"),
     ("textureOffset", "hlsl-dx9"), ("textureLodOffset", "hlsl-dx9"), ("textureGradOffset", "hlsl-dx9"),
     ("textureSize", "tsl"), ("textureQueryLevels", "tsl"), ("textureQueryLod", "tsl"), ("textureCompare", "tsl"),
     ("textureCompareLod", "tsl"), ("textureCompareOffset", "tsl"), ("textureCompareLodOffset", "tsl"),

@@ -78,8 +78,21 @@ def test_a_compute_shader_without_the_size_of_its_workgroup() -> None:
 
 
 @pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
-def test_the_number_of_a_sample(target: str) -> None:
-    text = "out vec4 color;\nvoid main() { color = vec4(float(gl_SampleID)); }\n"
+@pytest.mark.parametrize("value", ["gl_SampleID", "gl_SampleMask[0] = 1 & gl_SampleMaskIn[0]", "gl_SampleMask[0] = 3"])
+def test_the_samples_of_a_pixel(target: str, value: str) -> None:
+    text = f"out vec4 color;\nvoid main() {{ color = vec4(float({value})); }}\n"
     module = load_glsl_text(text, "case.frag").module
     emitted = next(iter(transpile(module, target, "case", keep=True).files.values()))
     assert compile_errors(emitted, target) == []
+
+
+def test_samples_that_a_target_lacks() -> None:
+    text = "#version 320 es\nprecision highp float;\nout vec4 color;\nvoid main() { color = vec4(VALUE); }\n"
+    for target, value in (
+        ("glsl-es-300", "float(gl_SampleID)"),
+        ("wgsl", "gl_SamplePosition, 0.0, 1.0"),
+        ("hlsl", "gl_SamplePosition, 0.0, 1.0"),
+    ):
+        module = load_glsl_text(text.replace("VALUE", value), "case.frag").module
+        with pytest.raises(SssgenError, match="a fragment shader of this target has no gl_Sample"):
+            transpile(module, target, "case", keep=True)

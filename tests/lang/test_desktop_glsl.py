@@ -183,3 +183,18 @@ void main() { float first = third; color = vec4(first, second, third, fourth); }
     assert places == sorted(places) and "fourth: f32 = 4.0;" in emitted_text
     with pytest.raises(SssgenError, match=r"no main\(\) that could set it"):
         load("#version 330\nfloat one() { return 1.0; }\nfloat x = one();\n", "a.frag")
+
+
+def test_what_reads_a_writeonly_buffer_takes_the_word_away() -> None:
+    """Atomics and out arguments read, and drivers refuse both of writeonly buffers."""
+    text = (
+        "#version 430\nlayout(local_size_x = 4) in;\n"
+        "layout(std430, binding = 0) writeonly buffer Counts { uint total; };\n"
+        "layout(std430, binding = 1) writeonly buffer Wholes { float whole[]; };\n"
+        "layout(std430, binding = 2) writeonly buffer Parts { float part[]; };\n"
+        "void main() {\n    uint at = atomicAdd(total, 1u);\n    part[at] = modf(float(at) * 0.3, whole[at]);\n}\n"
+    )
+    compiled = emitted(text, "parts.comp", "glsl-330")
+    assert not complaint(compiled.files)
+    access = {buffer["block"]: buffer["access"] for buffer in compiled.reflection["storage_buffers"]}
+    assert access == {"Counts": "read_write", "Wholes": "read_write", "Parts": "writeonly"}

@@ -28,6 +28,8 @@ WRAPPED = [
     ("int f(int x) { return ((1 << 31) >> 31) + x; }", 5, 4),
     ("float f(float x) { return x * float(1 << 31); }", 2.0, -(2.0**32)),
     ("int f(int x) { return x & (1 << 31); }", -5, LOWEST),
+    ("int f(int x) { return x + (-2147483647 - 1) / -1; }", 1, LOWEST + 1),  # Mesa's compiler dies at it
+    ("const int K = -2147483648; int f(int x) { return x + (K + 0) % -1; }", 3, 3),
     ("uint f(uint x) { return x & uint(~0); }", 77, 77),
     ("uint f(uint x) { return x | (3u << 31); }", 5, 2**31 + 5),
     ("int f(int x) { return mix(5, 0, false) + x; }", 2, 7),

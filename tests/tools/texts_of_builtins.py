@@ -474,6 +474,21 @@ return texture_size({name}, i);
 """
 
 
+def levels(name: str) -> str:
+    """The HLSL function for the number of levels, and its call."""
+    spelt = load("hlsl").types[SAMPLERS[name]]
+    parts = "width, height" + ", depth" * ("3D" in spelt) + ", layers" * ("Array" in spelt)
+    return f"""
+int texture_levels({spelt} map) {{
+    uint {parts}, levels;
+    map.GetDimensions(0, {parts}, levels);
+    return int(levels);
+}}
+
+return texture_levels({name});
+"""
+
+
 for name in SAMPLERS:
     size = "vec3i" if name.endswith(("volume", "layers", "cubes", "shades")) else "vec2i"
     read = f"{size}(textureDimensions({name}, i))"
@@ -489,8 +504,11 @@ for name in SAMPLERS:
         expected["glsl-es"] = "error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no samplerCubeArray"
     CASES[f"textureSize({name}, i)"] = expected
 for name in "map", "volume", "cube", "layers":
-    refused = refusals("textureQueryLevels", "glsl", "glsl-es", "hlsl", "dx9", "urp")
-    CASES[f"textureQueryLevels({name})"] = {"wgsl": f"i32(textureNumLevels({name}))", **refused}
+    read = f"textureQueryLevels({name})"
+    CASES[read] = {"wgsl": f"i32(textureNumLevels({name}))", **refusals("textureQueryLevels", "glsl-es", "dx9")}
+    CASES[read] |= {"glsl": read, "hlsl": levels(name), "urp": levels(name)}
+    if name == "layers":
+        CASES[read]["urp"] = "error: Unity, Universal Render Pipeline has no sampler2DArray"
 
 ALL = {
     **{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")},

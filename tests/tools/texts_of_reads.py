@@ -4,17 +4,37 @@ from __future__ import annotations
 
 READS = {
     "textureQueryLod(map, x2)": {
-        "glsl": "error: this target has no textureQueryLod (glsl-330)",
+        "glsl": "textureQueryLod(map, x2)",
         "hlsl": "float2(map.CalculateLevelOfDetail(map_sampler, x2), map.CalculateLevelOfDetailUnclamped(map_sampler, x2))",
-        "wgsl": "error: this target has no textureQueryLod (wgsl)",
+        "wgsl": """
+fn textureQueryLod_(map: texture_2d<f32>, map_sampler: sampler, P: vec2f) -> vec2f {
+    let size = vec2f(vec2i(textureDimensions(map, 0)));
+    let dx = dpdx(P) * size;
+    let dy = dpdy(P) * size;
+    let level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.1754944e-38));
+    return vec2f(clamp(level, 0.0, f32(i32(textureNumLevels(map)) - 1)), level);
+}
+
+return textureQueryLod_(map, map_sampler, x2);
+""",
         "glsl-es": "error: this target has no textureQueryLod (glsl-es-300)",
         "dx9": "error: this target has no textureQueryLod (unity-builtin)",
         "urp": "float2(map.CalculateLevelOfDetail(samplermap, x2), map.CalculateLevelOfDetailUnclamped(samplermap, x2))",
     },
     "textureQueryLod(volume, x3)": {
-        "glsl": "error: this target has no textureQueryLod (glsl-330)",
+        "glsl": "textureQueryLod(volume, x3)",
         "hlsl": "float2(volume.CalculateLevelOfDetail(volume_sampler, x3), volume.CalculateLevelOfDetailUnclamped(volume_sampler, x3))",
-        "wgsl": "error: this target has no textureQueryLod (wgsl)",
+        "wgsl": """
+fn textureQueryLod_(map: texture_3d<f32>, map_sampler: sampler, P: vec3f) -> vec2f {
+    let size = vec3f(vec3i(textureDimensions(map, 0)));
+    let dx = dpdx(P) * size;
+    let dy = dpdy(P) * size;
+    let level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.1754944e-38));
+    return vec2f(clamp(level, 0.0, f32(i32(textureNumLevels(map)) - 1)), level);
+}
+
+return textureQueryLod_(volume, volume_sampler, x3);
+""",
         "glsl-es": "error: this target has no textureQueryLod (glsl-es-300)",
         "dx9": "error: this target has no textureQueryLod (unity-builtin)",
         "urp": "float2(volume.CalculateLevelOfDetail(samplervolume, x3), volume.CalculateLevelOfDetailUnclamped(samplervolume, x3))",

@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Function, Member, Module
 from sssgen.ir.types import Struct
-from sssgen.ir.walk import all_expressions
+from sssgen.ir.walk import all_expressions, builtins_of
 from sssgen.lang.source_lines import comment_behind, comments_before, source_line
 from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
@@ -188,6 +189,9 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
     name = state.renames.get("Surface", "Surface")
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     surface_reads = {kind: _members_read(function, surface) for kind, (function, _) in entries.items()}
+    later_glsl = any(variable.builtin == "gl_SampleMaskIn" for variable in module.variables) or any(
+        BUILTINS[name].later_glsl for name in builtins_of(module)
+    )
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
         Diagnostic("warning", note.message, note.span, note.hint, source_line(note.span)) for note in state.notes
@@ -197,6 +201,7 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else GuardReport(), state.stage,
         reached=reached, shell=shell, frame_functions=state.frame_names, folder=folder, surface_reads=surface_reads,
+        later_glsl=later_glsl,
     )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ from sssgen.passes.stage.stage_interface import (
     interface,
     remarks,
 )
-from sssgen.passes.stage.storage_layout import check_buffers, read_buffers
+from sssgen.passes.stage.storage_layout import check_buffers, read_buffers, with_read_access
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.varying_parts import varying_parts
@@ -270,7 +270,7 @@ def pass_host_uniforms(state: State) -> Module:
 def check_shared_memory(state: State) -> Module:
     if not state.target.capabilities.plain_atomics:
         check_atomics(state.module)
-    module = check_buffers(state.module, state.target.capabilities)
+    module = check_buffers(with_read_access(state.module), state.target.capabilities)
     module = check_images(module, state.form, state.target.capabilities)
     is_reader = state.form == "vertex" and not state.target.capabilities.vertex_buffer_writes
     return read_buffers(module) if is_reader else module

@@ -101,6 +101,8 @@ class Program(NamedTuple):
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind, or function of the frame → the names of the functions that it calls, where a file of the target
     leaves an entry out."""
+    later_glsl: bool = False
+    """Whether a builtin needs GLSL 4.30."""
     folder: str = ""
     """The material's folder: the reflection names files relative to it. '' is the working folder."""
 
@@ -364,8 +366,8 @@ def _context(
         "library": [function.name for function in program.module.functions],
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,
-        "storage_buffers": bool(printer.buffers or printer.images),
-        "numbers_samples": any(variable.builtin == "gl_SampleID" for variable in program.module.variables),
+        "later_glsl": program.later_glsl or bool(printer.buffers or printer.images),
+        "numbers_samples": any(variable.builtin.startswith("gl_Sample") for variable in program.module.variables),
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 

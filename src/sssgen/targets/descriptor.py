@@ -15,7 +15,8 @@ from sssgen.targets.frame import Variant
 _Record = TypeVar("_Record", bound=NamedTuple)
 
 STAGE_BUILTINS = (
-    "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_SampleID", "gl_VertexID", "gl_InstanceID",
+    "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_SampleID", "gl_SamplePosition",
+    "gl_SampleMaskIn", "gl_SampleMask", "gl_VertexID", "gl_InstanceID",
     "gl_PointSize", "gl_PointCoord", "gl_GlobalInvocationID", "gl_LocalInvocationID", "gl_WorkGroupID",
     "gl_NumWorkGroups", "gl_LocalInvocationIndex",
 )  # fmt: skip

@@ -170,6 +170,8 @@ class Builtin(NamedTuple):
     """The parameters of signatures that GLSL ES lacks, as in `genF,float`."""
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
+    later_glsl: bool = False
+    """Whether GLSL 3.30 lacks it: a whole shader then is GLSL 4.30."""
     constant: tuple[ConstantArgument, ...] = ()
     """The arguments that must be constant expressions."""
     splat: tuple[str, ...] = ("wgsl",)

@@ -5,7 +5,7 @@ WGSL need some of these as separate arguments. Builtins of the project have them
 (`texture_parts.py`); the polyfills use these.
 
 Integer texels are fetched (`integer_reads.py`), as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a
-statement; its printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
+statement; its printer emits a function for that, `texture_size` or `texture_levels`.
 """
 
 from __future__ import annotations
@@ -144,16 +144,29 @@ ROWS = (
         size_query=True,
         texts={
             "wgsl-metal": "{type}({texture}.get_num_mip_levels())",
-            "glsl": "", "tsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
+            "glsl": "", "glsl-330": "textureQueryLevels", "tsl": "",
+            "hlsl": "texture_levels({bare_texture})", "hlsl-dx9": "",
+            "wgsl": "{type}(textureNumLevels({texture}))"},
+        later_glsl=True, kind="fetch",
     ),
     Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
-        "The level that a read would take at y, and the one that derivatives give. Only HLSL has it.",
+        "The level that a read would take at y, and the one that derivatives give.",
         componentwise=False, range=any_numbers,
         uniform_flow=True, kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
         texts={
-            "glsl": "", "tsl": "", "wgsl": "", "hlsl-dx9": "",
+            "glsl": "", "glsl-330": "textureQueryLod", "tsl": "", "wgsl": "", "hlsl-dx9": "",
             "hlsl": "float2({bare_texture}.CalculateLevelOfDetail({bare_sampler}, {1}), {bare_texture}.CalculateLevelOfDetailUnclamped({bare_sampler}, {1}))",
         },
+        later_glsl=True,
+        polyfill="".join(f"""
+vec2 textureQueryLod(sampler{dim}D map, vec{dim} P) {{
+    vec{dim} size = vec{dim}(textureSize(map, 0));
+    vec{dim} dx = dFdx(P) * size;
+    vec{dim} dy = dFdy(P) * size;
+    float level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.17549435e-38));
+    return vec2(clamp(level, 0.0, float(textureQueryLevels(map) - 1)), level);
+}}
+""" for dim in (2, 3)),
         splat=(),
     ),
     # Filtered reads

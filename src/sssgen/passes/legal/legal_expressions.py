@@ -21,7 +21,7 @@ from sssgen.passes.legal.constant_calls import ConstantCalls
 from sssgen.passes.legal.integer_operators import with_result
 from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widen
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
-from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
+from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider, overflowing_division
 from sssgen.passes.lift_calls import Calls
 from sssgen.passes.scopes import assigned, claim, declared, outs_of
 from sssgen.passes.substitute import inline, is_cheap
@@ -58,6 +58,7 @@ class LegalExpressions(Transformer):
         computed = capabilities.wrapping_constants and capabilities.constant_choices
         self.integers = None if computed else ConstantIntegers()
         """None where the target computes all constants as GLSL does."""
+        self.constants = {constant.name: constant.value for constant in module.constants}
 
     @functools.cached_property
     def constant_calls(self) -> ConstantCalls:
@@ -116,6 +117,8 @@ class LegalExpressions(Transformer):
     def legal(self, expr: ir.Expr) -> ir.Expr:
         """A node whose operands are legal already."""
         nested = not self.capabilities.constant_choices and chooses_nested(expr)
+        if self.integers is None and (value := overflowing_division(expr, self.constants)) is not None:
+            return literal(expr.type, value, expr.span)
         if self.integers is None or not (nested or kind_of(expr.type) in ("int", "uint")):
             return self.expressible(expr)
         parts = self.integers.parts(expr)

@@ -2,12 +2,13 @@
 
 Why: integers of GLSL wrap at 32 bits, but the literals of WGSL and of HLSL (DXC) are of types with 64 bits, so that
 `(2147483647 + 1) / 2` is positive there, and WGSL refuses `x & (1 << 31)`, `uint(~0)` and `3u << 31`. Only the smallest
-part that differs is replaced, so that the author's text stays otherwise. Used by `legalise`.
+part that differs is replaced, so that the author's text stays otherwise. So is the division of the lowest int by -1,
+at which Mesa's compiler of GLSL dies. Used by `legalise`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_evaluation import Value, combine
@@ -57,12 +58,38 @@ class ConstantIntegers:
         return parts
 
 
+def overflowing_division(expr: Expr, constants: Mapping[str, Expr]) -> Value | None:
+    """The value of a constant division of ints with a quotient of 32 bits and a sign more; None for anything else.
+
+    `constants` are the values of the module's constants.
+    """
+    if not isinstance(expr, Binary) or expr.op not in ("/", "%") or kind_of(expr.type) != "int":
+        return None
+    right = _constant(expr.right, constants)
+    left = _constant(expr.left, constants) if right is not None and -1 in right else None
+    if left is None or right is None or -0x80000000 not in left:
+        return None
+    return combine(expr, (left, right))
+
+
+def _constant(expr: Expr, constants: Mapping[str, Expr]) -> Value | None:
+    if isinstance(expr, Literal):
+        return constant_numbers(expr)
+    if isinstance(expr, Global):
+        return _constant(constants[expr.name], constants) if expr.name in constants else None
+    parts = [_constant(operand, constants) for operand in operands(expr)]
+    known = [part for part in parts if part is not None]
+    return combine(expr, known) if known and len(known) == len(parts) else None
+
+
 def is_wider(expr: Expr, parts: Sequence[Value], numbers: Value) -> bool:
     """Whether an integer expression of constants has another value, or none, where integers are wider.
 
     uints have 32 bits everywhere; WGSL refuses a shift that loses bits of one, and the conversion of a negative number.
     """
     kind = kind_of(expr.type)
+    if isinstance(expr, Binary) and expr.op == "%" and kind == "int" and -1 in parts[1]:
+        return -0x80000000 in parts[0]  # the quotient overflows
     if isinstance(expr, Binary) and (kind == "int" or expr.op == "<<"):
         exact = arithmetic.unbounded(expr.op, parts[0], parts[1])
     elif isinstance(expr, Unary) and expr.op == "-" and kind == "int":

@@ -177,7 +177,9 @@ def _slots_of(variable: Variable, places: range, link: str = "") -> list[Slot]:
 def _in_order(variables: Sequence[Variable], slots: Sequence[Slot]) -> tuple[Slot, ...]:
     """The slots in the order of their locations, then the builtins."""
     builtins = [
-        Slot(variable, (), variable.type, -1)
+        Slot(variable, (0,), variable.type.element, -1)  # gl_SampleMask, of which there is one number
+        if isinstance(variable.type, Array)
+        else Slot(variable, (), variable.type, -1)
         for variable in variables
         if variable.builtin and variable.builtin not in COLORS
     ]

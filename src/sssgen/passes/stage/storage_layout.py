@@ -9,8 +9,17 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Expr, Global, Index, Member, MemoryOperation, Module, Stmt, Variable
 from sssgen.ir.types import INT, Array, Matrix, Scalar, Struct, Type, Vector, components, spell
-from sssgen.ir.walk import expressions, operands, statements, subexpressions, written_places, written_root
+from sssgen.ir.walk import (
+    calls_of,
+    expressions,
+    operands,
+    statements,
+    subexpressions,
+    written_places,
+    written_root,
+)
 from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.scopes import outs_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -121,6 +130,24 @@ def read_buffers(module: Module) -> Module:
             message = f"a vertex shader of this target cannot write the storage buffer '{variable.name}'"
             raise Unsupported(message, variable.span, hint="write it in a compute or fragment shader")
         variables.append(variable._replace(access="readonly") if variable.storage == "buffer" else variable)
+    return module._replace(variables=tuple(variables))
+
+
+def with_read_access(module: Module) -> Module:
+    """The module without `writeonly` at buffers on which atomics work, or that are out arguments: both read them."""
+    outs = outs_of(module.functions)
+    places: list[Expr] = []
+    for function in module.functions:
+        body = function.body or ()
+        places += [stmt.args[0] for stmt in statements(body) if isinstance(stmt, MemoryOperation) and stmt.args]
+        places += [call.args[index] for call in calls_of(body) for index in outs.get(call.function, ())]
+    names = {root.name for root in map(written_root, places) if isinstance(root, Global)}
+    variables = [
+        variable._replace(access="")
+        if variable.storage == "buffer" and variable.access == "writeonly" and variable.name in names
+        else variable
+        for variable in module.variables
+    ]
     return module._replace(variables=tuple(variables))
 
 

@@ -38,6 +38,11 @@ def place_text(slot: Slot) -> str:
     return slot.variable.name + "".join([f".{step}" if isinstance(step, str) else f"[{step}]" for step in slot.path])
 
 
+def output_text(printer: Printer, slot: Slot) -> str:
+    """An output as the entry returns it."""
+    return f"{printer.type(UINT)}({place_text(slot)})" if is_count(slot) else place_text(slot)
+
+
 def member(slot: Slot) -> str:
     """A slot's name in a struct."""
     return "_".join([slot.variable.name, *map(str, slot.path)])

@@ -43,7 +43,7 @@ class HlslPrinter(BytePrinter):
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
-        self.sized: set[Sampler] = set()
+        self.sized: set[hlsl_sizes.SizeFunction] = set()
         self.overloads = Counter([function.name for function in module.functions])
 
     @property
@@ -93,11 +93,11 @@ class HlslPrinter(BytePrinter):
         return f"transpose({value.name})" if is_uniform else value.name
 
     def print_function(self, function: ir.Function) -> list[Line]:
-        """A function, after those that return the sizes of its textures."""
-        textures = [texture for texture in hlsl_sizes.texture_types(function) if texture not in self.sized]
-        self.sized.update(textures)
-        size_functions = [line for texture in textures for line in hlsl_sizes.definition(texture)]
-        return [*size_functions, *super().print_function(function)]
+        """A function, after those that return the sizes and levels of its textures."""
+        needed = [each for each in hlsl_sizes.size_functions(function) if each not in self.sized]
+        self.sized.update(needed)
+        lines = [line for each in needed for line in hlsl_sizes.definition(each)]
+        return [*lines, *super().print_function(function)]
 
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
         """A statement; a loop with an attribute, as FXC would try to unroll 64 steps of a ray march."""

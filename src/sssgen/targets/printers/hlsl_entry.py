@@ -11,7 +11,7 @@ import re
 from sssgen.ir.nodes import NOWHERE
 from sssgen.passes.scopes import names_of
 from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
-from sssgen.targets.printers.entry_points import entry_body, member, parameter_type, parameters, place_text
+from sssgen.targets.printers.entry_points import entry_body, member, output_text, parameter_type, parameters
 from sssgen.targets.printers.printed_lines import Line, wrap
 from sssgen.targets.printers.printer import Printer
 
@@ -61,7 +61,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         semantics = _OUTPUT_SEMANTICS[stage.kind]
         head = f"{sampling(slot, semantics)}{printer.type(parameter_type(slot))}"
         signature = f"{head} {name}({params}) : {place_of(slot, semantics)} {{"
-        body.append(f"return {place_text(slot)};")
+        body.append(f"return {output_text(printer, slot)};")
     elif stage.outputs:
         struct, result = f"{stage.kind.capitalize()}Output", "output"
         while struct in taken:
@@ -75,7 +75,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         lines += [Line("};"), Line("")]
         signature = f"{struct} {name}({params}) {{"
         body += [f"{struct} {result};"]
-        body += [f"{result}.{member(slot)} = {place_text(slot)};" for slot in stage.outputs]
+        body += [f"{result}.{member(slot)} = {output_text(printer, slot)};" for slot in stage.outputs]
         body.append(f"return {result};")
     else:
         signature = f"void {name}({params}) {{"

@@ -1,9 +1,11 @@
-"""The size of a texture in HLSL, where only a statement gives it: each type of texture gets a function.
+"""The size of a texture and its levels in HLSL, where only a statement gives them: each type of texture has a function.
 
-The rows of builtins call that function `texture_size`; the descriptor reserves the name.
+The rows of builtins call these functions `texture_size` and `texture_levels`; the descriptor reserves the names.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
@@ -11,26 +13,44 @@ from sssgen.ir.types import Sampler
 from sssgen.ir.walk import all_expressions
 from sssgen.targets.printers.printed_lines import Line
 
-_NAME = "texture_size"
+_NAMES = ("texture_size", "texture_levels")
 
 
-def texture_types(function: ir.Function) -> list[Sampler]:
-    """The types of the textures whose size a function reads, without duplicates."""
-    types: dict[Sampler, None] = {}
+class SizeFunction(NamedTuple):
+    """A function that the text needs."""
+
+    name: str
+    texture: Sampler
+
+
+def size_functions(function: ir.Function) -> list[SizeFunction]:
+    """The functions for the textures whose size or levels a function reads, without duplicates."""
+    needed: dict[SizeFunction, None] = {}
     for expr in all_expressions(function.body or ()):
-        if isinstance(expr, ir.Intrinsic) and _NAME in BUILTINS[expr.name].texts.get("hlsl", ""):
+        name = BUILTINS[expr.name].texts.get("hlsl", "").partition("(")[0] if isinstance(expr, ir.Intrinsic) else ""
+        if isinstance(expr, ir.Intrinsic) and name in _NAMES:
             texture = expr.args[0].type
             assert isinstance(texture, Sampler)
-            types[texture._replace(shadow=False)] = None  # HLSL compares with the sampler
-    return list(types)
+            needed[SizeFunction(name, texture._replace(shadow=False))] = None  # HLSL compares with the sampler
+    return list(needed)
 
 
-def definition(texture: Sampler) -> list[Line]:
-    """The function for a type of texture."""
+def definition(needed: SizeFunction) -> list[Line]:
+    """The lines of such a function."""
+    name, texture = needed
     sizes = ["width", "height", *["depth"] * (texture.dim == "3D"), *["layers"] * texture.array]
     outs = ", ".join(sizes)
+    if name == "texture_levels":
+        return [
+            Line(f"int {name}({_texture_type(texture)} map) {{"),
+            Line(f"    uint {outs}, levels;"),
+            Line(f"    map.GetDimensions(0, {outs}, levels);"),
+            Line("    return int(levels);"),
+            Line("}"),
+            Line(""),
+        ]
     return [
-        Line(f"int{len(sizes)} {_NAME}({_texture_type(texture)} map, int level) {{"),
+        Line(f"int{len(sizes)} {name}({_texture_type(texture)} map, int level) {{"),
         Line(f"    uint {outs}, levels;"),
         Line(f"    map.GetDimensions(level, {outs}, levels);"),
         Line(f"    return int{len(sizes)}({outs});"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sssgen.ir.nodes import NOWHERE
 from sssgen.passes.scopes import names_of
 from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
-from sssgen.targets.printers.entry_points import entry_body, member, parameter_type, parameters, place_text
+from sssgen.targets.printers.entry_points import entry_body, member, output_text, parameter_type, parameters
 from sssgen.targets.printers.printed_lines import Line, wrap
 from sssgen.targets.printers.printer import Printer
 
@@ -35,7 +35,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
         result = f" -> {attributes(slot, stage.kind == 'vertex')} {printer.type(parameter_type(slot))}"
-        body.append(f"return {place_text(slot)};")
+        body.append(f"return {output_text(printer, slot)};")
     elif stage.outputs:
         struct = f"{stage.kind.capitalize()}Output"
         while struct in taken:
@@ -44,7 +44,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         lines += [Line(f"    {declaration(slot, member(slot), stage.kind == 'vertex')},") for slot in stage.outputs]
         lines += [Line("}"), Line("")]
         result = f" -> {struct}"
-        body.append(f"return {struct}({', '.join(map(place_text, stage.outputs))});")
+        body.append(f"return {struct}({', '.join([output_text(printer, slot) for slot in stage.outputs])});")
     sizes = f" @workgroup_size({', '.join(map(str, printer.module.workgroup))})" if printer.module.workgroup else ""
     lines += [Line(f"@{stage.kind}{sizes}"), *wrap(f"fn {name}({params}){result} {{", NOWHERE)]
     return [*lines, *[line for text in body for line in wrap(f"    {text}", NOWHERE)], Line("}")]
