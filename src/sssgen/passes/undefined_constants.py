@@ -60,20 +60,19 @@ class ConstantChecker:
 
     def value(self, expr: ir.Expr) -> Value | None:
         """The value of a constant; None for anything else."""
-        kind = type(expr)
-        if kind is ir.Literal:
-            return constant_numbers(expr)
-        if kind is ir.Local:
+        if type(expr) is ir.Local:
             return None
-        if isinstance(expr, ir.Global):
-            return self.constants.get(expr.name)
+        if type(expr) is ir.Literal:
+            return constant_numbers(expr)
         if isinstance(expr, ir.Binary):
             return self.binary(expr, self.value(expr.left), self.value(expr.right))
+        if isinstance(expr, ir.Global):
+            return self.constants.get(expr.name)
         parts = [self.value(operand) for operand in operands(expr)]
-        if self.partly and isinstance(expr, ir.Intrinsic) and None in parts and _is_outside(expr.name, parts):
-            return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
         constants = [part for part in parts if part is not None]
         if len(constants) < len(parts):
+            if self.partly and constants and isinstance(expr, ir.Intrinsic) and _is_outside(expr.name, parts):
+                return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
             return None
         if isinstance(expr, ir.Intrinsic):
             return self.builtin(expr, constants)
