@@ -69,11 +69,11 @@ class ConstantChecker:
         if isinstance(expr, ir.Global):
             return self.constants.get(expr.name)
         parts = [self.value(operand) for operand in operands(expr)]
-        constants = [part for part in parts if part is not None]
-        if len(constants) < len(parts):
-            if self.partly and constants and isinstance(expr, ir.Intrinsic) and _is_outside(expr.name, parts):
+        if None in parts:
+            if self.partly and isinstance(expr, ir.Intrinsic) and _is_outside(expr.name, parts):
                 return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
             return None
+        constants = [part for part in parts if part is not None]
         if isinstance(expr, ir.Intrinsic):
             return self.builtin(expr, constants)
         value = combine(expr, constants) if constants else None
@@ -114,8 +114,10 @@ class ConstantChecker:
 def _is_outside(name: str, args: Sequence[Value | None]) -> bool:
     """Whether the constants among the arguments that compilers check are outside of the domain in a component."""
     row = BUILTINS[name]
+    if row.defined is None:
+        return False
     numbers = [part for index in row.checked if (part := args[index]) is not None]
-    if row.defined is None or not numbers or len(numbers) < len(row.checked):
+    if not numbers or len(numbers) < len(row.checked):
         return False
     for component in zip(*numbers, strict=False):  # a scalar is checked with the first component
         values = dict(zip(row.checked, component, strict=True))

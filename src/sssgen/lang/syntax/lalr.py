@@ -71,7 +71,10 @@ def run(tables: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[li
                 break
             if action.__class__ is Reduction:
                 size, origin, callback, children, absent = action
-                if size:
+                if size == 1:
+                    states.pop()
+                    popped = [values.pop()]
+                elif size:
                     popped = values[-size:]
                     del states[-size:], values[-size:]
                 else:
