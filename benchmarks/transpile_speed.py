@@ -74,14 +74,14 @@ def text_of(size: int) -> str:
 
 
 def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
-    """Stage → its shortest time of several rounds, in seconds."""
+    """Stage → its shortest CPU time of several rounds, in seconds."""
     results: dict[str, float] = {}
 
     def timed(name: str, work: Callable[[], Result]) -> Result:
         with pause_gc():  # as in the command
-            start = time.perf_counter()
+            start = time.process_time()
             result = work()
-        results[name] = min(results.get(name, float("inf")), time.perf_counter() - start)
+        results[name] = min(results.get(name, float("inf")), time.process_time() - start)
         return result
 
     for _ in range(ROUNDS):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from struct import Struct
 
 from sssgen.ir.formats import FLOAT32
@@ -28,11 +29,17 @@ _LARGEST = 2.0**128 - 2.0**104
 
 def float32(value: float) -> float | None:
     """A float64 rounded to float32; None where that is not finite, or denormal."""
+    return _nearest(value) if value else float(value)  # 0.0 and -0.0 would be one key
+
+
+@lru_cache(4096)
+def _nearest(value: float) -> float | None:
+    """The same, of a number that is not 0: most literals of a text are the same few."""
     try:
         result: float = _FLOAT32.unpack(_FLOAT32.pack(value))[0]
     except OverflowError:
         return None
-    if not math.isfinite(result) or (abs(result) < _SMALLEST and value != 0.0):
+    if not math.isfinite(result) or abs(result) < _SMALLEST:
         return None
     return result
 

@@ -99,7 +99,9 @@ def is_out_builtin(name: str) -> bool:
 
 def out_positions(name: str) -> set[int]:
     """The positions of the out parameters of the function `name`; empty for other names."""
-    definition = next(iter(_DEFINITION.findall(OUT_BUILTINS.get(name, ""))), "()")
+    if name not in OUT_BUILTINS:
+        return set()
+    definition = _DEFINITION.findall(OUT_BUILTINS[name])[0]
     return {index for index, param in enumerate(_listed(definition)) if param.split()[0:1] == ["out"]}
 
 

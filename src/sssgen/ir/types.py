@@ -193,9 +193,12 @@ def column_size(type: Type) -> int:
     return type.rows if isinstance(type, Matrix) else components(type)
 
 
+_OF_SCALARS = (Scalar, Vector, Matrix)
+
+
 def kind_of(type: Type) -> str:
     """The scalar kind inside a scalar, vector or matrix, else ''."""
-    return type.kind if isinstance(type, Scalar | Vector | Matrix) else ""
+    return type.kind if isinstance(type, _OF_SCALARS) else ""
 
 
 def is_numeric(type: Type) -> bool:

@@ -56,13 +56,20 @@ def with_operands(expr: ir.Expr, new: tuple[ir.Expr, ...]) -> ir.Expr:
     return ir.Member(expr.type, new[0], expr.field, expr.span) if isinstance(expr, ir.Member) else expr
 
 
+_WITH_VALUE = (ir.Declare, ir.Return)
+_WITH_CONDITION = (ir.If, ir.While, ir.Assume)
+_WITH_BLOCKS = (ir.If, ir.For, ir.While)
+_PARTS = (ir.Swizzle, ir.Index, ir.Member)
+_VARIABLES = (ir.Local, ir.Global)
+
+
 def expressions(stmt: ir.Stmt) -> tuple[ir.Expr, ...]:
     """The expressions of a statement itself (not those of inner statements)."""
     if type(stmt) is ir.Assign:
         return (stmt.target, stmt.value)
-    if isinstance(stmt, ir.Declare | ir.Return):
+    if isinstance(stmt, _WITH_VALUE):
         return (stmt.value,) if stmt.value is not None else ()
-    if isinstance(stmt, ir.If | ir.While | ir.Assume):
+    if isinstance(stmt, _WITH_CONDITION):
         return (stmt.condition,)
     if isinstance(stmt, ir.For):
         return (stmt.condition,) if stmt.condition is not None else ()
@@ -101,7 +108,7 @@ def statements(block: ir.Block) -> Iterator[ir.Stmt]:
     while stack:
         stmt = stack.pop()
         yield stmt
-        if isinstance(stmt, (ir.If, ir.For, ir.While)):
+        if isinstance(stmt, _WITH_BLOCKS):
             stack.extend(reversed(inner_statements(stmt)))
 
 
@@ -126,9 +133,22 @@ def builtins_of(module: ir.Module) -> set[str]:
     return {part.name for function in module.functions for part in inner_parts(function.body or (), ir.Intrinsic)}
 
 
-def calls_of(block: ir.Block) -> list[ir.Call]:
-    """The calls in the expressions of a block, those of inner statements too, in the order of the text."""
-    return inner_parts(block, ir.Call)
+_KEPT = 4096
+_calls: dict[int, tuple[ir.Block, tuple[ir.Call, ...]]] = {}
+"""By the ids of blocks. The block is kept, so that no other one gets its id."""
+
+
+def calls_of(block: ir.Block) -> tuple[ir.Call, ...]:
+    """The calls in the expressions of a block, those of inner statements too, in the order of the text.
+
+    The checker, several passes and the printer ask for those of a function: each block is searched once.
+    """
+    known = _calls.get(id(block))
+    if known is None:
+        if len(_calls) >= _KEPT:
+            _calls.clear()
+        known = _calls[id(block)] = block, tuple(inner_parts(block, ir.Call))
+    return known[1]
 
 
 def inner_parts(block: ir.Block, kind: type[_Part]) -> list[_Part]:
@@ -137,7 +157,7 @@ def inner_parts(block: ir.Block, kind: type[_Part]) -> list[_Part]:
     leaves = _LEAVES
     inside = _OPERANDS
     for stmt in statements(block):
-        stack: list[ir.Expr] = [*expressions(stmt)[::-1]]
+        stack = list(expressions(stmt)[::-1])
         while stack:
             node = stack.pop()
             class_ = node.__class__
@@ -161,6 +181,6 @@ def root(target: ir.Expr) -> ir.Local | None:
 
 def written_root(target: ir.Expr) -> ir.Local | ir.Global | None:
     """The variable that an assignment to `target` changes, local or global."""
-    while isinstance(target, ir.Swizzle | ir.Index | ir.Member):
+    while isinstance(target, _PARTS):
         target = target.value
-    return target if isinstance(target, ir.Local | ir.Global) else None
+    return target if isinstance(target, _VARIABLES) else None

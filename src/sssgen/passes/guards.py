@@ -16,7 +16,7 @@ from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import BUILTINS, Guard, by_column, with_constants
 from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from sssgen.ir.walk import operands, subexpressions, with_operands
+from sssgen.ir.walk import operands, statements, subexpressions, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
 from sssgen.passes.ranges.sites import DIVISION, ELEMENT, WHOLE_DIVISION, Site
 from sssgen.passes.substitute import inline, with_larger_bound
@@ -58,6 +58,9 @@ def guard(
 
 
 def _without_assumptions(module: ir.Module) -> ir.Module:
+    bodies = [function.body or () for function in module.functions]
+    if not any(isinstance(stmt, ir.Assume) for body in bodies for stmt in statements(body)):
+        return module
     remover = _AssumptionRemover()
     return module._replace(functions=tuple([remover.function(function) for function in module.functions]))
 

@@ -60,21 +60,20 @@ class ConstantChecker:
 
     def value(self, expr: ir.Expr) -> Value | None:
         """The value of a constant; None for anything else."""
-        kind = type(expr)
-        if kind is ir.Literal:
-            return constant_numbers(expr)
-        if kind is ir.Local:
+        if type(expr) is ir.Local:
             return None
-        if isinstance(expr, ir.Global):
-            return self.constants.get(expr.name)
+        if type(expr) is ir.Literal:
+            return constant_numbers(expr)
         if isinstance(expr, ir.Binary):
             return self.binary(expr, self.value(expr.left), self.value(expr.right))
+        if isinstance(expr, ir.Global):
+            return self.constants.get(expr.name)
         parts = [self.value(operand) for operand in operands(expr)]
-        if self.partly and isinstance(expr, ir.Intrinsic) and None in parts and _is_outside(expr.name, parts):
-            return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
-        constants = [part for part in parts if part is not None]
-        if len(constants) < len(parts):
+        if None in parts:
+            if self.partly and isinstance(expr, ir.Intrinsic) and _is_outside(expr.name, parts):
+                return self.wrong(f"{expr.name} has no value: it needs {BUILTINS[expr.name].domain}", expr)
             return None
+        constants = [part for part in parts if part is not None]
         if isinstance(expr, ir.Intrinsic):
             return self.builtin(expr, constants)
         value = combine(expr, constants) if constants else None
@@ -115,8 +114,10 @@ class ConstantChecker:
 def _is_outside(name: str, args: Sequence[Value | None]) -> bool:
     """Whether the constants among the arguments that compilers check are outside of the domain in a component."""
     row = BUILTINS[name]
+    if row.defined is None:
+        return False
     numbers = [part for index in row.checked if (part := args[index]) is not None]
-    if row.defined is None or not numbers or len(numbers) < len(row.checked):
+    if not numbers or len(numbers) < len(row.checked):
         return False
     for component in zip(*numbers, strict=False):  # a scalar is checked with the first component
         values = dict(zip(row.checked, component, strict=True))

@@ -486,7 +486,9 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
     spans: dict[int, Span] = {}
     for line in text.split("\n"):
         mark = _MARK.search(line)
-        line = _MARK.sub("", line).rstrip()
+        if mark is not None:
+            line = line[: mark.start()] + _MARK.sub("", line[mark.end() :])
+        line = line.rstrip()
         if line.lstrip() == NO_LINES or (not line and (not lines or not lines[-1] or lines[-1].endswith("{"))):
             continue
         if lines and not lines[-1] and line.lstrip().startswith("}"):

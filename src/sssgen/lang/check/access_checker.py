@@ -15,7 +15,7 @@ from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import did_you_mean
 
-_SWIZZLES = ("xyzw", "rgba", "stpq")
+_SWIZZLES = {letters: str.maketrans(letters, "xyzw") for letters in ("xyzw", "rgba", "stpq")}
 _OF_SCALARS = frozenset(letters[0] * count for letters in _SWIZZLES for count in (1, 2, 3, 4))
 """The swizzles of a number (GLSL 4.20, section 5.5)."""
 
@@ -110,14 +110,14 @@ class AccessChecker:
             return value if repeated == type_ else Typed(ir.Construct(repeated, (value.expr,), member.span))
         if not isinstance(type_, Vector):
             raise context.fail(member.name.span, f"{a_type(type_)} has no member '{name}'")
-        for letters in _SWIZZLES:
-            parts = name.translate(str.maketrans(letters, "xyzw")) if set(name) <= set(letters) else ""
+        for letters, to_xyzw in _SWIZZLES.items():
+            parts = name.translate(to_xyzw) if set(name) <= set(letters) else ""
             result = swizzle_type(type_, parts)
             if result is not None:
                 if isinstance(member.value, s.Name) and member.value.text == "gl_WorkGroupSize" and len(parts) == 1:
                     return Typed(ir.Literal(UINT, context.workgroup["xyz".index(parts)], member.span))
                 quantity = q.channel_of(value.quantity) if len(parts) == 1 else ""
                 return Typed(ir.Swizzle(result, value.expr, parts, member.span), quantity)
-        letters = _SWIZZLES[0][: type_.size]
+        letters = "xyzw"[: type_.size]
         hint = f"its components are {letters}"
         raise context.fail(member.name.span, f"'{name}' is not a swizzle of {a_type(type_)}", hint)

@@ -11,7 +11,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.rules import element_type
-from sssgen.ir.signatures import candidates, overload, resolve
+from sssgen.ir.signatures import overload, resolve
 from sssgen.ir.types import FLOAT, INT, VOID, Sampler, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
@@ -61,7 +61,7 @@ class CallChecker:
         exact = _exact(overloads, types)
         if exact is not None:
             return self.call_function(name, exact, args, call)
-        if candidates(name) and (not overloads or (context.plain and resolve(name, types) is not None)):
+        if name in BUILTINS and (not overloads or (context.plain and resolve(name, types) is not None)):
             return self.call_intrinsic(name, args, call)
         if overloads and not (context.plain and out_builtins.out_builtin(name, types)):
             return self.call_function(name, self.overload(name, args, call), args, call)
@@ -103,7 +103,7 @@ class CallChecker:
         if self.context.es == 100 and name.endswith("Lod") and renamed and not self.context.language.vertex:
             hint = f"write {name}EXT with #extension GL_EXT_shader_texture_lod : enable"
             raise self.context.fail(call.span, f"{name} belongs to vertex shaders in GLSL ES 1.00", hint)
-        if renamed is not None and candidates(renamed):
+        if renamed in BUILTINS:
             return self.call_intrinsic(renamed, args, call)
         name = renamed or name
         if name in PROJECTIVE_READS:

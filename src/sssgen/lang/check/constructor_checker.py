@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import (
     FLOAT,
@@ -27,7 +25,7 @@ from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts, literal_as
-from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.type_names import array_type, named_element, named_type
 from sssgen.lang.check.wording import a_type, constructor_hint
 from sssgen.lang.syntax import tree as s
 
@@ -41,7 +39,7 @@ class ConstructorChecker:
 
     def type_constructor(self, callee: s.TypeName, call: s.CallOf) -> Typed:
         if callee.lengths:
-            element, _ = named_type(self.context, replace(callee, lengths=()))
+            element, _ = named_element(self.context, callee)
             lengths = callee.lengths
             if call.args and any(isinstance(length, s.Unsized) for length in lengths[1:]):  # float[][](…): as its parts
                 first, _ = self.expressions.with_prelude(call.args[0], self.expressions.check)

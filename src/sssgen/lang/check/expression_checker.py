@@ -13,8 +13,8 @@ from collections.abc import Callable, Container, Sequence
 from typing import Any, TypeVar
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import FLOAT_MAX, element_type
-from sssgen.ir.signatures import candidates
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, spell, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
@@ -241,7 +241,7 @@ class ExpressionChecker:
             return Typed(context.buffer_members[name.text]._replace(span=name.span))
         if name.text in context.blocks:
             raise context.fail(name.span, f"'{name.text}' is a block; write the name of a member behind it")
-        if name.text in context.functions or candidates(name.text):
+        if name.text in context.functions or name.text in BUILTINS:
             raise context.fail(name.span, f"'{name.text}' is a function; call it with (…)")
         raise context.unknown(name.span, "name", name.text, [*context.function.scopes.names(), *context.globals])
 

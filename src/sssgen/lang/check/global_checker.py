@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import IMAGES, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
@@ -14,7 +12,7 @@ from sssgen.lang.check.image_checker import declare_image
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
-from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.type_names import array_type, named_element, named_type
 from sssgen.lang.check.uniform_hints import check_hints
 from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
@@ -115,7 +113,7 @@ class GlobalChecker:
     def constant(self, declaration: s.Declaration, declarator: s.Declarator) -> None:
         context, name = self.context, declarator.name
         is_macro = declaration.type.name == "auto"
-        element, quantity = (VOID, "") if is_macro else named_type(context, replace(declaration.type, lengths=()))
+        element, quantity = (VOID, "") if is_macro else named_element(context, declaration.type)
         check_global_name(context, name)
         if declarator.value is None:
             raise context.fail(name.span, f"const '{name.text}' needs a value")

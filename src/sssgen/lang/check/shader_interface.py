@@ -14,7 +14,7 @@ from sssgen.lang.check.declared_names import check_global_name, unused_global_na
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.memory_checker import holds
 from sssgen.lang.check.name_scope import GlobalValue
-from sssgen.lang.check.type_names import named_type
+from sssgen.lang.check.type_names import named_element
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -44,7 +44,7 @@ class ShaderInterface:
             message = "patch belongs to tessellation shaders, which are not translated"
             raise context.fail(declaration.qualifiers.span, message)
         storage = self.storage(keywords)
-        element, quantity = named_type(context, replace(declaration.type, lengths=()))
+        element, quantity = named_element(context, declaration.type)
         self.check_passed(declaration, storage, element)
         for declarator in declaration.declarators:
             name, span = declarator.name.text, declarator.name.span

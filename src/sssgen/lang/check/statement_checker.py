@@ -6,7 +6,6 @@ The side effects of an expression become statements before the statement that co
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from sssgen.ir import nodes as ir
@@ -27,7 +26,7 @@ from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.memory_checker import stored_directly
-from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.type_names import array_type, named_element, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -117,7 +116,7 @@ class StatementChecker:
             declare_struct(context, declaration.type.struct, local=True)
         if not declaration.declarators:
             return []
-        type_, quantity = named_type(context, replace(declaration.type, lengths=()))
+        type_, quantity = named_element(context, declaration.type)
         if type_ == VOID or isinstance(type_, Sampler):
             raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}")
         const = "const" in declaration.qualifiers.keywords

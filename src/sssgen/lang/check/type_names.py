@@ -14,7 +14,15 @@ from sssgen.lang.syntax import tree as s
 
 
 def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
-    """The type and the quantity that a type name stands for."""
+    """The type and the quantity that a type name stands for, with its lengths."""
+    type_, quantity = named_element(context, name)
+    if name.lengths:
+        return array_type(context, type_, name.lengths), ""
+    return type_, quantity
+
+
+def named_element(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
+    """The type and the quantity that a type name stands for without its lengths."""
     type_: Type
     quantity = ""
     if name.name in BY_NAME:
@@ -38,8 +46,6 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
     ):
         hint = "some engines have no other matrices"
         raise context.fail(name.span, f"{a_type(type_)} is not square, as a technique's matrices must be", hint)
-    if name.lengths:
-        return array_type(context, type_, name.lengths), ""
     return type_, quantity
 
 

@@ -73,13 +73,11 @@ class MacroConstants:
         """Those of the names that are used outside of the constant's range, or where no operand can be."""
         if not names:
             return set()
-        candidates, conflicts, before = set(names), set[str](), ""
-        for position, (kind, text, _) in enumerate(tokens):
-            if text in candidates and (
-                before in _OPERAND_ENDS or position < self.begins[text] or position >= self.ends.get(text, len(tokens))
-            ):
+        candidates, conflicts = set(names), set[str]()
+        for position in [position for position, token in enumerate(tokens) if token[1] in candidates]:
+            text, before = tokens[position].text, tokens[position - 1].type if position else ""
+            if before in _OPERAND_ENDS or not self.begins[text] <= position < self.ends.get(text, len(tokens)):
                 conflicts.add(text)
-            before = kind
         return conflicts
 
     def with_declarations(self, names: Sequence[str], tokens: list[Token]) -> list[Token]:

@@ -139,20 +139,16 @@ class Expander:
         Raises TooMuch at the use of a macro that grows without end.
         """
         pending, macros = self.pending, self.macros
-        if not tokens or (pending is None and macros.keys().isdisjoint([token[1] for token in tokens])):
-            return list(tokens)
         out: list[Token] = []
-        index = 0
-        if pending is not None:
+        start = 0
+        if pending is not None and tokens:
             self.pending = None
-            index = self._use(pending, tokens, 0, out)
-        while index < len(tokens):
-            token = tokens[index]
-            index += 1
-            if token[1] in macros:
-                index = self._use((token, _NONE), tokens, index, out)
-            else:
-                out.append(token)
+            start = self._use(pending, tokens, 0, out)
+        for index in [index for index, token in enumerate(tokens) if token[1] in macros]:
+            if index >= start:  # it is no argument of the use before
+                out += tokens[start:index]
+                start = self._use((tokens[index], _NONE), tokens, index + 1, out)
+        out += tokens[start:]
         return out
 
     def rest(self) -> list[Token]:

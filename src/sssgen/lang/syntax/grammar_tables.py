@@ -99,13 +99,15 @@ def _reduction(rule: Any) -> Action:
             children.append((index, not symbol.is_term and symbol.name.startswith("_"), pending))
             pending = 0
     pending += absent[-1]
+    whole = not pending and children == [(index, False, 0) for index in range(len(rule.expansion))]
+    kept = None if whole else tuple(children)
     helper = name.startswith("_")
     single = len(children) == 1 and not pending and not children[0][2]
     if options.expand1 and not rule.alias and single and not children[0][1]:
         if len(rule.expansion) == 1:
             return name
         return Reduction(len(rule.expansion), name, "only", tuple(children), 0)
-    return Reduction(len(rule.expansion), name, "" if helper else str(rule.alias or name), tuple(children), pending)
+    return Reduction(len(rule.expansion), name, "" if helper else str(rule.alias or name), kept, pending)
 
 
 def to_json(tables: Tables, grammar: str) -> str:
@@ -137,8 +139,8 @@ def from_json(text: str, grammar_digest: str) -> Tables | None:
     if data["grammar"] != grammar_digest:
         return None
     reductions = [
-        Reduction(size, origin, callback, tuple([tuple(child) for child in children]), absent)
-        for size, origin, callback, children, absent in data["reductions"]
+        Reduction(size, origin, callback, None if kept is None else tuple([tuple(child) for child in kept]), absent)
+        for size, origin, callback, kept, absent in data["reductions"]
     ]
     rows = [
         {name: reductions[action[0]] if action.__class__ is list else action for name, action in row.items()}

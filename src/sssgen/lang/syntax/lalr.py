@@ -24,8 +24,9 @@ class Reduction(NamedTuple):
     """The rule's name, by which the next state is found."""
     callback: str
     """The builder's method; '' for a helper whose children are those of the rule around it."""
-    children: tuple[tuple[int, bool, int], ...]
-    """For each kept value: its position, whether it is a helper's list, and the number of absent values before it."""
+    children: tuple[tuple[int, bool, int], ...] | None
+    """For each kept value: its position, whether it is a helper's list, and the number of absent values before it; None
+    where the values are kept as they are."""
     absent: int
     """The number of absent values at the end."""
 
@@ -70,15 +71,17 @@ def run(tables: Tables, tokens: Sequence[Token], methods: dict[str, Callable[[li
                 break
             if action.__class__ is Reduction:
                 size, origin, callback, children, absent = action
-                if size:
+                if size == 1:
+                    states.pop()
+                    popped = [values.pop()]
+                elif size:
                     popped = values[-size:]
                     del states[-size:], values[-size:]
                 else:
-                    popped = values  # an empty rule reads none of them
-                if callback:
-                    values.append(methods[callback](_gathered(popped, children, absent)))
-                else:
-                    values.append(_listed(popped, children, absent))
+                    popped = []
+                if children is not None:
+                    popped = _gathered(popped, children, absent) if callback else _listed(popped, children, absent)
+                values.append(methods[callback](popped) if callback else popped)
                 states.append(goto[states[-1]][origin])
                 if kind == END and states[-1] == tables.end:
                     return values[-1]

@@ -100,6 +100,7 @@ _ENDING = frozenset("NAME INT FLOAT BOOL RPAR RSQB INCDEC RETURN BREAK CONTINUE 
 _OPENED = frozenset(("LPAR", "LSQB", "LBRACE"))
 _CLOSED = frozenset(("RPAR", "RSQB", "RBRACE"))
 _OPERATORS = frozenset(("OPERATOR", "PLUSMINUS", "NOT", "ASSIGN", "QMARK"))
+_SHAPING = _OPERATORS | _OPENED | _CLOSED | {"SEMICOLON", "COMMA"}
 
 
 def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
@@ -107,6 +108,8 @@ def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
     depth = operators = 0
     for token in tokens:
         kind = token[0]
+        if kind not in _SHAPING:
+            continue
         if kind in _OPERATORS:
             operators += 1
             if operators > MAX_OPERATORS:
@@ -122,7 +125,7 @@ def _check_shape(tokens: Sequence[Token], reporter: Reporter) -> None:
         elif kind in _CLOSED:
             depth = max(0, depth - 1)
             operators = 0
-        elif kind == "SEMICOLON" or kind == "COMMA":
+        else:
             operators = 0
     reporter.check()
 

@@ -346,7 +346,7 @@ def as_type(expression: Any) -> Any:
         lengths.insert(0, inner.index)
         inner = inner.value
     if isinstance(inner, s.TypeName):
-        return replace(inner, lengths=inner.lengths + tuple(lengths))
+        return inner if not lengths else replace(inner, lengths=inner.lengths + tuple(lengths))
     if isinstance(inner, s.Name):
         return s.TypeName(inner.text, tuple(lengths), inner.span)
     return expression

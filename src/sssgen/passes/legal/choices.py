@@ -8,6 +8,8 @@ from sssgen.ir.types import Array, Struct, Vector
 from sssgen.ir.walk import operands, subexpressions
 from sssgen.passes.capabilities import Capabilities
 
+_CHOICES = (Select, Intrinsic)
+
 
 def is_expression(select: Select, capabilities: Capabilities) -> bool:
     """Whether the target has an expression for this choice, which evaluates one arm."""
@@ -25,7 +27,7 @@ def _is_costly(expr: Expr) -> bool:
 
 def chooses_nested(expr: Expr) -> bool:
     """Whether an expression chooses between vectors made of vectors, as a constant at file scope may be."""
-    if not isinstance(expr.type, Vector) or not isinstance(expr, Select | Intrinsic):
+    if not isinstance(expr.type, Vector) or not isinstance(expr, _CHOICES):
         return False
     if isinstance(expr, Intrinsic) and not BUILTINS[expr.name].is_choice([arg.type for arg in expr.args]):
         return False

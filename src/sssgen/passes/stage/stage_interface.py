@@ -86,7 +86,7 @@ def entry_of(module: Module) -> Function | None:
     entries = (
         function
         for function in module.functions
-        if function.key == ENTRY and function.result == VOID and function.body is not None
+        if not function.params and function.key == ENTRY and function.result == VOID and function.body is not None
     )
     return next(entries, None)
 

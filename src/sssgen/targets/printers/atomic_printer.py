@@ -44,15 +44,16 @@ class AtomicPrinter(Printer):
         )
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        if not self.addressed and self.is_atomic(expr):
+        if self.atomics and not self.addressed and self.is_atomic(expr):
             return self.load.format(self.place(expr)), PRIMARY
-        if isinstance(expr, ir.Index):
-            value = self.expr(expr.value, POSTFIX)
-            outer, self.addressed = self.addressed, False
-            index = self.expr(expr.index)
-            self.addressed = outer
-            return self.element(value, expr.value.type, index), POSTFIX
         return super().bound(expr)
+
+    def index(self, index: ir.Index) -> tuple[str, int]:
+        value = self.expr(index.value, POSTFIX)
+        outer, self.addressed = self.addressed, False
+        position = self.expr(index.index)
+        self.addressed = outer
+        return self.element(value, index.value.type, position), POSTFIX
 
     def element(self, array: str, type_: Type, index: str) -> str:
         """An element of an array or vector."""

@@ -40,23 +40,20 @@ class NumpyExpressions(Printer):
         text, binding = self.bound(expr)
         return text if binding >= least else f"({text})"
 
-    def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        if isinstance(expr, ir.Swizzle):
-            value = self.expr(expr.value, POSTFIX)
-            if len(expr.components) == 1:
-                return f"{value}[{'xyzw'.index(expr.components)}]", POSTFIX
-            return f'swizzle({self.expr(expr.value)}, "{expr.components}")', PRIMARY
-        if isinstance(expr, ir.Unary):
-            return self.unary(expr)
-        if isinstance(expr, ir.Select):
-            return f"select({self.expr(expr.condition)}, {', '.join(self.typed(expr.yes, expr.no))})", PRIMARY
-        if isinstance(expr, ir.Index):
-            length = expr.value.type.length if isinstance(expr.value.type, Array) else components(expr.value.type)
-            inside = isinstance(expr.index, ir.Literal) and 0 <= expr.index.value < length
-            if inside and not isinstance(unnested(expr.type)[0], Struct):
-                return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
-            return f"index({self.expr(expr.value)}, {self.expr(expr.index)})", PRIMARY
-        return super().bound(expr)
+    def swizzle(self, swizzle: ir.Swizzle) -> tuple[str, int]:
+        if len(swizzle.components) == 1:
+            return f"{self.expr(swizzle.value, POSTFIX)}[{'xyzw'.index(swizzle.components)}]", POSTFIX
+        return f'swizzle({self.expr(swizzle.value)}, "{swizzle.components}")', PRIMARY
+
+    def select(self, select: ir.Select) -> tuple[str, int]:
+        return f"select({self.expr(select.condition)}, {', '.join(self.typed(select.yes, select.no))})", PRIMARY
+
+    def index(self, index: ir.Index) -> tuple[str, int]:
+        length = index.value.type.length if isinstance(index.value.type, Array) else components(index.value.type)
+        inside = isinstance(index.index, ir.Literal) and 0 <= index.index.value < length
+        if inside and not isinstance(unnested(index.type)[0], Struct):
+            return super().index(index)
+        return f"index({self.expr(index.value)}, {self.expr(index.index)})", PRIMARY
 
     def unary(self, unary: ir.Unary) -> tuple[str, int]:
         operand = unary.operand

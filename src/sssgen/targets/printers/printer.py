@@ -7,7 +7,7 @@ source that it came from.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
@@ -92,6 +92,20 @@ class Printer:
         """The interface of a whole shader."""
         self.buffers = [variable for variable in module.variables if variable.storage == "buffer"]
         self.images = [variable for variable in module.variables if variable.storage == "image"]
+        self.methods: dict[type, Callable[[Any], tuple[str, int]]] = {
+            ir.Literal: self.number_or_bool,
+            ir.Local: self.local,
+            ir.Global: lambda value: (self.global_value(value), PRIMARY),
+            ir.Unary: self.unary,
+            ir.Binary: self.binary,
+            ir.Select: self.select,
+            ir.Call: lambda call: (self.call(call), PRIMARY),
+            ir.Intrinsic: self.intrinsic,
+            ir.Construct: self.construct,
+            ir.Swizzle: self.swizzle,
+            ir.Index: self.index,
+            ir.Member: self.member,
+        }
 
     # Types and literals
 
@@ -101,9 +115,10 @@ class Printer:
             return type_.name
         if isinstance(type_, Array):
             return self.variable(type_, "")
-        if spell(type_) not in self.target.types:
+        text = self.target.types.get(spell(type_))
+        if text is None:
             raise failure(f"{self.target.title} has no {spell(type_)}")
-        return self.target.types[spell(type_)]
+        return text
 
     def sampler_type(self, type_: Type) -> str:
         """The type of a texture's separate sampler; one that compares has another type."""
@@ -135,34 +150,24 @@ class Printer:
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
         """The expression's text and its precedence."""
-        kind = type(expr)
-        if kind is ir.Local:
-            return self.local(expr)  # type: ignore[arg-type]  # narrowed by its exact class
-        if kind is ir.Literal:
-            text = self.literal(expr)  # type: ignore[arg-type]  # narrowed by its exact class
-            return text, UNARY if text[0] == "-" else PRIMARY
-        if isinstance(expr, ir.Binary):
-            return self.binary(expr)
-        if isinstance(expr, ir.Swizzle):
-            return f"{self.expr(expr.value, POSTFIX)}.{self.letters(expr)}", POSTFIX
-        if isinstance(expr, ir.Global):
-            return self.global_value(expr), PRIMARY
-        if isinstance(expr, ir.Intrinsic):
-            return self.intrinsic(expr)
-        if isinstance(expr, ir.Construct):
-            return self.construct(expr)
-        if isinstance(expr, ir.Call):
-            return self.call(expr), PRIMARY
-        if isinstance(expr, ir.Member):
-            return f"{self.expr(expr.value, POSTFIX)}.{expr.field}", POSTFIX
-        if isinstance(expr, ir.Unary):
-            operand = self.expr(expr.operand, UNARY)
-            return f"{expr.op}{f'({operand})' if operand[0] == expr.op else operand}", UNARY
-        if isinstance(expr, ir.Select):
-            return self.select(expr)
-        if isinstance(expr, ir.Index):
-            return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
-        raise TypeError(f"not an expression: {expr!r}")
+        return self.methods[expr.__class__](expr)
+
+    def number_or_bool(self, literal: ir.Literal) -> tuple[str, int]:
+        text = self.literal(literal)
+        return text, UNARY if text[0] == "-" else PRIMARY
+
+    def swizzle(self, swizzle: ir.Swizzle) -> tuple[str, int]:
+        return f"{self.expr(swizzle.value, POSTFIX)}.{self.letters(swizzle)}", POSTFIX
+
+    def member(self, member: ir.Member) -> tuple[str, int]:
+        return f"{self.expr(member.value, POSTFIX)}.{member.field}", POSTFIX
+
+    def index(self, index: ir.Index) -> tuple[str, int]:
+        return f"{self.expr(index.value, POSTFIX)}[{self.expr(index.index)}]", POSTFIX
+
+    def unary(self, unary: ir.Unary) -> tuple[str, int]:
+        operand = self.expr(unary.operand, UNARY)
+        return f"{unary.op}{f'({operand})' if operand[0] == unary.op else operand}", UNARY
 
     def letters(self, swizzle: ir.Swizzle) -> str:
         """The letters of a swizzle: colours where the author wrote them, and of a texel, as readers expect."""

@@ -56,14 +56,14 @@ class TslPrinter(Printer):
             return f"{value:#x}" if value >= 1 << 16 else str(value)
         return str(value - (1 << 32) if value >> 31 else value)
 
-    def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        if isinstance(expr, ir.Member):
-            return f"{self.node(expr.value)}.get('{expr.field}')", PRIMARY
-        if isinstance(expr, ir.Unary):
-            return f"{self.node(expr.operand)}.{_UNARY[expr.op]}()", PRIMARY
-        if isinstance(expr, ir.Index):
-            return f"{self.node(expr.value)}.element({self.part('int', expr.index)})", PRIMARY
-        return super().bound(expr)
+    def member(self, member: ir.Member) -> tuple[str, int]:
+        return f"{self.node(member.value)}.get('{member.field}')", PRIMARY
+
+    def unary(self, unary: ir.Unary) -> tuple[str, int]:
+        return f"{self.node(unary.operand)}.{_UNARY[unary.op]}()", PRIMARY
+
+    def index(self, index: ir.Index) -> tuple[str, int]:
+        return f"{self.node(index.value)}.element({self.part('int', index.index)})", PRIMARY
 
     def binary(self, binary: ir.Binary) -> tuple[str, int]:
         return f"{self.node(binary.left)}.{_METHODS[binary.op]}({self.expr(binary.right)})", PRIMARY

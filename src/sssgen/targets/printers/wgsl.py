@@ -81,6 +81,9 @@ class WgslPrinter(AtomicPrinter):
 
         Both are, as npm wesl reads `<y), z>` as a template, too.
         """
+        text = ", ".join(texts)
+        if " < " not in text:
+            return text
         less = [*[_has_open(" < ", text) for text in texts[:-1]], False]
         closed = [less[index] or (any(less[:index]) and _has_open(" >", text)) for index, text in enumerate(texts)]
         return ", ".join([f"({text})" if close else text for text, close in zip(texts, closed, strict=True)])
