@@ -190,7 +190,7 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     surface_reads = {kind: _members_read(function, surface) for kind, (function, _) in entries.items()}
     later_glsl = any(variable.builtin == "gl_SampleMaskIn" for variable in module.variables) or any(
-        BUILTINS[name].later_glsl for name in builtins_of(module)
+        BUILTINS[name].later_glsl for name in builtins_of(module) & BUILTINS.keys()
     )
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
