@@ -90,6 +90,7 @@ def test_samples_that_a_target_lacks() -> None:
     text = "#version 320 es\nprecision highp float;\nout vec4 color;\nvoid main() { color = vec4(VALUE); }\n"
     for target, value in (
         ("glsl-es-300", "float(gl_SampleID)"),
+        ("glsl-es-300", "float(gl_SampleMask[0] = 3)"),
         ("wgsl", "gl_SamplePosition, 0.0, 1.0"),
         ("hlsl", "gl_SamplePosition, 0.0, 1.0"),
     ):

@@ -186,15 +186,17 @@ void main() { float first = third; color = vec4(first, second, third, fourth); }
 
 
 def test_what_reads_a_writeonly_buffer_takes_the_word_away() -> None:
-    """Atomics and out arguments read, and drivers refuse both of writeonly buffers."""
+    """Atomics and out arguments read, too, and drivers refuse that of writeonly buffers."""
     text = (
         "#version 430\nlayout(local_size_x = 4) in;\n"
         "layout(std430, binding = 0) writeonly buffer Counts { uint total; };\n"
         "layout(std430, binding = 1) writeonly buffer Wholes { float whole[]; };\n"
         "layout(std430, binding = 2) writeonly buffer Parts { float part[]; };\n"
-        "void main() {\n    uint at = atomicAdd(total, 1u);\n    part[at] = modf(float(at) * 0.3, whole[at]);\n}\n"
+        "layout(std430, binding = 3) writeonly buffer Copies { float copied[]; };\n"
+        "void main() {\n    uint at = atomicAdd(total, 1u);\n    part[at] = modf(float(at) * 0.3, whole[at]);\n"
+        "    whole[at + 1u] = float(at);\n    copied[at] = copied[at + 1u];\n}\n"
     )
     compiled = emitted(text, "parts.comp", "glsl-330")
     assert not complaint(compiled.files)
     access = {buffer["block"]: buffer["access"] for buffer in compiled.reflection["storage_buffers"]}
-    assert access == {"Counts": "read_write", "Wholes": "read_write", "Parts": "writeonly"}
+    assert access == {"Counts": "read_write", "Wholes": "read_write", "Parts": "writeonly", "Copies": "read_write"}

@@ -117,11 +117,12 @@ def interface(
     """The interface of a module with its final names. Raises Unsupported for an input that the target lacks.
 
     `function` is the key of its main function, `builtins` are those that the target has; any other
-    output is dropped. `turned`: the framebuffer's y counts from the top.
+    output but gl_SampleMask is dropped. `turned`: the framebuffer's y counts from the top.
     """
     inputs = [variable for variable in module.variables if variable.storage == "in"]
     outputs = [variable for variable in module.variables if variable.storage == "out"]
-    for variable in inputs:
+    masks = [variable for variable in outputs if variable.builtin == "gl_SampleMask"]  # which cannot be left out
+    for variable in inputs + masks:
         if variable.builtin and variable.builtin not in builtins:
             message = f"a {kind} shader of this target has no {variable.builtin}"
             raise Unsupported(message, variable.span, hint=_INSTEAD.get(variable.builtin, ""))

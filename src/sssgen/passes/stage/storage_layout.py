@@ -5,9 +5,21 @@ WGSL's own layout is that of std430. An HLSL buffer has elements of one type wit
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
-from sssgen.ir.nodes import Expr, Global, Index, Member, MemoryOperation, Module, Stmt, Variable
+from sssgen.ir.nodes import (
+    Assign,
+    Expr,
+    Global,
+    Index,
+    Member,
+    MemoryOperation,
+    Module,
+    Stmt,
+    Swizzle,
+    Variable,
+)
 from sssgen.ir.types import INT, Array, Matrix, Scalar, Struct, Type, Vector, components, spell
 from sssgen.ir.walk import (
     calls_of,
@@ -134,13 +146,14 @@ def read_buffers(module: Module) -> Module:
 
 
 def with_read_access(module: Module) -> Module:
-    """The module without `writeonly` at buffers on which atomics work, or that are out arguments: both read them."""
+    """The module without `writeonly` at buffers that it reads, as atomics and out arguments do, too."""
     outs = outs_of(module.functions)
     places: list[Expr] = []
     for function in module.functions:
         body = function.body or ()
         places += [stmt.args[0] for stmt in statements(body) if isinstance(stmt, MemoryOperation) and stmt.args]
         places += [call.args[index] for call in calls_of(body) for index in outs.get(call.function, ())]
+        places += [part for stmt in statements(body) for expr in _read(stmt) for part in subexpressions(expr)]
     names = {root.name for root in map(written_root, places) if isinstance(root, Global)}
     variables = [
         variable._replace(access="")
@@ -149,6 +162,19 @@ def with_read_access(module: Module) -> Module:
         for variable in module.variables
     ]
     return module._replace(variables=tuple(variables))
+
+
+def _read(stmt: Stmt) -> Iterator[Expr]:
+    """The expressions of a statement whose values it reads; of the place that an assignment writes only the indices."""
+    if not isinstance(stmt, Assign) or stmt.op:
+        yield from expressions(stmt)
+        return
+    yield stmt.value
+    place = stmt.target
+    while isinstance(place, Index | Member | Swizzle):
+        if isinstance(place, Index):
+            yield place.index
+        place = place.value
 
 
 def _shape(type_: Type, rule: str) -> list[tuple[int, int]]:
