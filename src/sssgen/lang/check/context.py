@@ -25,6 +25,8 @@ class Language(NamedTuple):
     """Whether it is a compute shader by its name, also without the size of its workgroup"""
     extensions: frozenset[str] = frozenset()
     """The names of the extensions that it asks for"""
+    desktop: int = 0
+    """The version of desktop GLSL that the file names, or 0"""
 
 
 class Typed(NamedTuple):
@@ -94,6 +96,8 @@ class CheckContext:
         self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]
         """Checks an expression; the checker of expressions sets it."""
+        self.sequences = 0
+        """The number of comma operators so far."""
         self.structs: dict[str, Struct] = {}
         self.struct_declarations: list[ir.StructDecl] = []
         self.functions: dict[str, list[Signature]] = {}

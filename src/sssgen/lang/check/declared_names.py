@@ -92,6 +92,9 @@ def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = 
     fields: dict[str, Field] = {}
     for member in struct.members:
         if member.type.struct is not None:
+            if context.es:
+                message = "GLSL ES has no structs that are declared inside of structs"
+                raise context.fail(member.type.span, message, "declare it before this one")
             declare_struct(context, member.type.struct, local)
         type_, quantity = named_type(context, member.type)
         if words := [word for word in member.qualifiers.keywords if word in _NOT_OF_MEMBERS]:

@@ -13,7 +13,7 @@ from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
-from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.type_names import array_type, check_sequences, named_type
 from sssgen.lang.check.uniform_hints import check_hints
 from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
@@ -62,6 +62,7 @@ class GlobalChecker:
         if "invariant" in keywords and ("uniform" in keywords or "const" in keywords):
             raise context.fail(declaration.qualifiers.span, "only what stages pass can be invariant")
         if "uniform" in keywords:
+            self.interface.check_uniform(declaration.qualifiers)
             for declarator in declaration.declarators:
                 elements = self.interface.textures(declaration, declarator)
                 for index, element in enumerate(elements):
@@ -116,6 +117,7 @@ class GlobalChecker:
         check_global_name(context, name)
         if declarator.value is None:
             raise context.fail(name.span, f"const '{name.text}' needs a value")
+        sequences = context.sequences
         if is_macro:
             value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check(value).expr
@@ -126,6 +128,7 @@ class GlobalChecker:
             value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check_as(value, type_, quantity, f"'{name.text}'")
             )
+        check_sequences(context, sequences, declarator.value.span)
         if prelude or not is_constant(context, value):
             message = f"the value of const '{name.text}' is not constant"
             raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")
