@@ -17,10 +17,9 @@ class Lenience(NamedTuple):
 OTHER = "other"
 LENIENCE = {
     "precision": Lenience(
-        r"precision_conflict|unspecified_precision|differing_precision|default-precision|precision-mismatch"
-        r"|without-precision|block-precision|uniform-precision",
-        "no other language has precisions: they are left out, so that those of two stages need not agree; a type without "
-        "one is refused",
+        r"block-precision|uniform-precision-unused",
+        "no other language has precisions: those of the members of blocks, and of uniforms that one of the stages does "
+        "not use, need not agree",
     ),
     "interpolation": Lenience(
         r"interpolation_mismatch|centroid-mismatched",

@@ -118,12 +118,13 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     extensions = frozenset(extension.partition(":")[0].strip() for extension in source.extensions)
     compute = label.endswith((".comp", ".comp.glsl"))
     vertex = _is_vertex(tokens, label)
+    precisions: dict[Span, str] = {}
     if es:
         is_compute = compute or any(token.text.startswith("local_size_") for token in tokens)
-        check_precisions(source.tokens, not (vertex or is_compute), reporter)
+        precisions = check_precisions(source.tokens, not (vertex or is_compute), reporter)
         reporter.check()
     desktop = source.version if source.profile != "es" else 0
-    module = check_plain(file, reporter, Language(es, vertex, compute, extensions, desktop))
+    module = check_plain(file, reporter, Language(es, vertex, compute, extensions, desktop, precisions))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 

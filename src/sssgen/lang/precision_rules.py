@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+from sssgen.ir.spans import Span
 from sssgen.lang.syntax.tokens import Token
 from sssgen.support.diagnostics import Reporter
 
@@ -18,41 +19,45 @@ _END = frozenset(("SEMICOLON", "LBRACE", "RBRACE", "COMMA", "TYPE"))
 """The terminals after which a precision no longer applies."""
 
 
-def check_precisions(tokens: Sequence[Token], is_fragment: bool, reporter: Reporter) -> None:
-    """Reports types without a precision in a shader of GLSL ES, and precisions of types that have none."""
+def check_precisions(tokens: Sequence[Token], is_fragment: bool, reporter: Reporter) -> dict[Span, str]:
+    """Reports types without a precision in a shader of GLSL ES, and precisions of types that have none.
+
+    Gives the precision of each type that is followed by a name.
+    """
     is_whole = any(name.text == "main" and mark.text == "(" for name, mark in pairwise(tokens))
-    defaults: list[set[str]] = [set() if is_fragment else {"float"}]
-    """The types with a default precision, of each scope"""
-    has_precision, is_default = False, False
+    defaults = [{"int": "mediump"} if is_fragment else {"float": "highp", "int": "highp"}]
+    """The precisions of types, of each scope"""
+    defaults[0] |= dict.fromkeys(_LOW, "lowp")
+    precisions: dict[Span, str] = {}
+    own, is_default = "", False
     for token, after in pairwise(tokens):
         kind = token.type
         if kind == "TYPE":
             base = _base(token.text)
-            if (is_default and base != token.text) or ((has_precision or is_default) and not base):
+            default = next((scope[base] for scope in reversed(defaults) if base in scope), "")
+            if (is_default and base != token.text) or ((own or is_default) and not base):
                 hint = "only float, int, their vectors and matrices, and textures have one"
                 reporter.error(token.span, f"'{token.text}' cannot have a precision here", hint)
             elif is_default:
-                defaults[-1].add(base)
-            elif is_whole and after.type == "NAME" and not has_precision and _is_without(base, defaults):
-                defaults[0].add(base)  # reported once
-                where = "fragment shaders of GLSL ES" if base == "float" else "GLSL ES"
-                hint = f"write precision highp {base}; above it"
-                reporter.error(token.span, f"'{base}' has no default precision in {where}", hint)
+                defaults[-1][base] = own
+            elif after.type == "NAME" and base:
+                precisions[token.span] = own or default
+                if is_whole and not (own or default):
+                    defaults[0][base] = "highp"  # reported once
+                    where = "fragment shaders of GLSL ES" if base == "float" else "GLSL ES"
+                    hint = f"write precision highp {base}; above it"
+                    reporter.error(token.span, f"'{base}' has no default precision in {where}", hint)
         if kind == "LBRACE":
-            defaults.append(set())
+            defaults.append({})
         elif kind == "RBRACE" and len(defaults) > 1:
             defaults.pop()
         if kind == "PRECISION":
-            has_precision = True
+            own = token.text
         elif kind == "DEFAULT_PRECISION":
             is_default = True
         elif kind in _END:
-            has_precision = is_default = False
-
-
-def _is_without(base: str, defaults: Sequence[set[str]]) -> bool:
-    """Whether a type needs a precision, and none of these scopes has a default for it."""
-    return base not in ("", "int", *_LOW) and not any(base in scope for scope in defaults)
+            own, is_default = "", False
+    return precisions
 
 
 def _base(name: str) -> str:

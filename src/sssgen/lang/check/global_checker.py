@@ -8,7 +8,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
 from sssgen.lang.check.constant_values import constant_value, is_constant
-from sssgen.lang.check.declared_names import check_global_name, declare_struct
+from sssgen.lang.check.declared_names import check_global_name, declare_struct, precision_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
@@ -89,7 +89,10 @@ class GlobalChecker:
         hints, texel_quantity = check_hints(context, declarator, type_, default)
         quantity = quantity or texel_quantity
         location = uniform_location(context, declaration.qualifiers, name, type_, element)
-        uniform = ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path, location=location)
+        precision = precision_of(context, declaration.type)
+        uniform = ir.Uniform(
+            name.text, type_, default, hints, quantity, doc, name.span, path, location=location, precision=precision
+        )
         context.globals[name.text] = GlobalValue(type_, quantity, extent=of_uniform(uniform)[:2])
         self.uniforms.append(uniform)
 
