@@ -63,12 +63,16 @@ _FRAGMENT = {
 """Those that fragment shaders alone have."""
 
 
+_SAMPLES = ("GL_OES_sample_variables", "GL_ANDROID_extension_pack_es31a")
+"""The extensions that have gl_SampleID."""
+
+
 def check_stage(context: CheckContext, name: s.Name) -> None:
     """Reports a variable that a vertex shader of GLSL ES, or the version, does not have."""
     text, language = name.text, context.language
     if context.es and language.vertex and text in _FRAGMENT:
         raise context.fail(name.span, f"'{text}' belongs to fragment shaders", "write it in the other stage")
-    if text == "gl_SampleID" and 0 < context.es < 320 and "GL_OES_sample_variables" not in language.extensions:
+    if text == "gl_SampleID" and 0 < context.es < 320 and language.extensions.isdisjoint(_SAMPLES):
         hint = "write #version 320 es, or #extension GL_OES_sample_variables : require"
         raise context.fail(name.span, "gl_SampleID needs GLSL ES 3.20", hint)
 
