@@ -43,7 +43,8 @@ def stage_text(case: Case, stage: str) -> str:
     inputs, outputs = ("varying", "") if is_old else ("in", "out")
     if is_old and not fragment:
         inputs = "attribute"
-    lines = []
+    lines: list[str] = []
+    location = 0  # that of the color which the suite declares
     for value in case.values:
         if value.kind == "input":
             flat = "flat " if fragment and not is_old and value.type[0] in "iu" else ""
@@ -51,6 +52,9 @@ def stage_text(case: Case, stage: str) -> str:
         elif value.kind == "output":
             # a fragment shader has no matrices as outputs
             word = "" if fragment and value.type.startswith("mat") else outputs
+            if word == "out" and fragment and case.version.endswith("es"):
+                location += 1
+                word = f"layout(location = {location}) out"
             lines.append(f"{word} {value.type} {value.name};".strip())
         elif _lacks(text, value):
             lines.append(f"uniform {value.type} {value.name};")

@@ -40,7 +40,10 @@ def read(text: str, name: str) -> TextCase | None:
     if not stages:
         return None
     other = next((section for section in sections if _OTHER.search(section)), "")
+    twice = next((section for section in stages if names.count(f"{section} shader") > 1), "")
     skipped = f"it has the section {other}" if other else unsayable("".join(stages.values()))
+    if twice:
+        skipped = f"its {twice} shader has several texts, which a driver links"
     main = "fragment" if "fragment" in stages else next(iter(stages))
     vertex = stages.get("vertex", "") if main == "fragment" else ""
     label = f"{name.rpartition('/')[2].removesuffix('.shader_test')}.{main[:4]}"

@@ -148,9 +148,13 @@ def _with_default(vertex: str, fragment: str) -> tuple[str, str]:
     return with_version(vertex), with_version(fragment)
 
 
+_STATED = re.compile(r"\s*#\s*version|(?:\s|/\*.*?\*/|//[^\n]*)*#\s*version\s+100\b", re.DOTALL)
+"""A version at the head of a text; that of GLSL ES 1.00 may be below comments."""
+
+
 def with_version(text: str) -> str:
     """A text with its version, which is 1.00 in WebGL where it says nothing."""
-    return text if re.match(r"\s*#\s*version", text) or not text.strip() else f"#version 100\n{text}"
+    return text if _STATED.match(text) or not text.strip() else f"#version 100\n{text}"
 
 
 def ogles_cases(path: Path, name: str) -> Iterator[WebglCase]:

@@ -68,6 +68,28 @@ def test_results_in_a_driver(name: str, backend: Callable[[str], Backend]) -> No
     assert differences(backend(name), tuple(programs())) == []
 
 
+EMPTY_LAST = """
+#version 300 es
+precision highp float;
+int f(int a, int b) {
+    int r = a;
+    switch (b & 3) {
+        case 0: r += 1; break;
+        case 1: r += 2;
+        case 2: ;
+    }
+    return r;
+}
+""".lstrip()
+"""An empty statement is a statement, also behind the last label (GLSL ES 3.00, section 6.2)."""
+
+
+@pytest.mark.parametrize("name", BACKENDS)
+def test_a_switch_may_end_with_an_empty_statement(name: str, backend: Callable[[str], Backend]) -> None:
+    expected = A + np.where(B & 3 == 0, 1, np.where(B & 3 == 1, 2, 0))
+    np.testing.assert_array_equal(called(EMPTY_LAST, backend(name), A, B), expected)
+
+
 NESTED = """
 int f(int a, int b) {
     int r = 0;

@@ -393,3 +393,18 @@ void main() { color = vec4(level * height()); }
         files = translate(vertex, fragment, target).files
         source = compilers.Source(files[f"pair.{target}.frag"], target, companion=files[f"pair.{target}.vert"])
         assert not [message for own in compilers.check(source).values() for message in compilers.errors(own)]
+
+
+def test_precisions_of_a_uniform_agree_in_es() -> None:
+    """GLSL ES 3.00, section 4.5.3: a program has one uniform of a name. Defaults count, and members of structs."""
+    head = "#version 300 es\n"
+    vertex = (
+        f"{head}struct Lamp {{ float power; }};\nuniform Lamp lamp;\nvoid main() {{ gl_Position = vec4(lamp.power); }}"
+    )
+    fragment = (
+        f"{head}precision PRECISION float;\nstruct Lamp {{ float power; }};\nuniform Lamp lamp;\nout vec4 color;\n"
+    )
+    fragment += "void main() { color = vec4(lamp.power); }"
+    translate(vertex, fragment.replace("PRECISION", "highp"))
+    with pytest.raises(SssgenError, match=r"'lamp' is highp in a\.vert:3:14, but mediump here"):
+        translate(vertex, fragment.replace("PRECISION", "mediump"))

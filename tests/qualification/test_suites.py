@@ -119,5 +119,5 @@ def test_each_kind_of_case_has_its_outcome(tmp_path: Path) -> None:
 
 def test_each_class_of_lenience_has_a_reason() -> None:
     assert all(lenience.why for lenience in LENIENCE.values())
-    assert class_of("gles3/linkage.uniform.basic.precision_conflict_1") == "precision"
+    assert class_of("piglit/glsl-mismatched-uniform-precision-unused") == "precision"
     assert class_of("gles3/own.case") == "other"

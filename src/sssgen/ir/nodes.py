@@ -272,7 +272,8 @@ class Uniform(NamedTuple):
     program calls it where it is a part of a uniform of the source, or '': `lights[2].color` for a member of all
     elements, `maps[1]` for one texture, `Camera.view` for a member of a block with an instance name. `block` is the
     uniform block that declares it, or ''; `row_major` is whether the block stores its matrices row by row, and `layout`
-    is std140, shared, packed, or '' where it states none. `location` is the one that the source states, or -1.
+    is std140, shared, packed, or '' where it states none. `location` is the one that the source states, or -1;
+    `precision` is that of GLSL ES, in which both stages of a program agree, or ''.
     """
 
     name: str
@@ -287,6 +288,7 @@ class Uniform(NamedTuple):
     row_major: bool = False
     layout: str = ""
     location: int = -1
+    precision: str = ""
 
     @property
     def source(self) -> str:

@@ -13,6 +13,7 @@ from sssgen.lang import shadertoy
 from sssgen.lang.assumption_comments import AssumedInput, with_assumptions
 from sssgen.lang.check.context import Language
 from sssgen.lang.check.module_checker import check_plain
+from sssgen.lang.precision_rules import check_precisions
 from sssgen.lang.preprocess.preprocessor import PreprocessedText, preprocess
 from sssgen.lang.source_lines import keep_lines
 from sssgen.lang.syntax.doc_comments import words_of
@@ -116,7 +117,14 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
     es = source.version if source.profile == "es" else 0
     extensions = frozenset(extension.partition(":")[0].strip() for extension in source.extensions)
     compute = label.endswith((".comp", ".comp.glsl"))
-    module = check_plain(file, reporter, Language(es, _is_vertex(tokens, label), compute, extensions))
+    vertex = _is_vertex(tokens, label)
+    precisions: dict[Span, str] = {}
+    if es:
+        is_compute = compute or any(token.text.startswith("local_size_") for token in tokens)
+        precisions = check_precisions(source.tokens, not (vertex or is_compute), reporter)
+        reporter.check()
+    desktop = source.version if source.profile != "es" else 0
+    module = check_plain(file, reporter, Language(es, vertex, compute, extensions, desktop, precisions))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
     return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 

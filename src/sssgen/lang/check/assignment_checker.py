@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import operator_type
-from sssgen.ir.types import BOOL, FLOAT, Array, Matrix, Sampler, Scalar, Vector, kind_of
+from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext, Typed
 from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
 from sssgen.lang.check.operator_checker import combined_quantity
+from sssgen.lang.check.type_names import holds_array
 from sssgen.lang.check.wording import a_type, mixed_hint
 from sssgen.lang.syntax import tree as s
 
@@ -28,6 +29,7 @@ class AssignmentChecker:
         expressions.methods[s.Comma] = self.comma
 
     def comma(self, comma: s.Comma) -> Typed:
+        self.context.sequences += 1
         for part in comma.parts[:-1]:
             self.effect(part)
         return self.expressions.check(comma.parts[-1])
@@ -78,8 +80,9 @@ class AssignmentChecker:
         type_, op, start = target.expr.type, assignment.op, len(context.function.prelude)
         if not op:
             assert assignment.value is not None
-            if context.es == 100 and isinstance(type_, Array):
-                raise context.fail(span, "GLSL ES 1.00 assigns no arrays", "assign each element")
+            if context.es == 100 and holds_array(type_):
+                message = f"GLSL ES 1.00 assigns no arrays, but this is {a_type(type_)}"
+                raise context.fail(span, message, "assign each element")
             source = expressions.check_as(assignment.value, type_, target.quantity, "the assigned value")
             return ir.Assign(self.fixed_place(target.expr, source, start), op, source, span)
         if assignment.value is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Field, Struct, Type, Vector
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Field, Struct, Type, Vector, passed_locations
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.syntax import tree as s
@@ -59,13 +59,50 @@ _LIMITS = {
 """GLSL's implementation limits, with the values that WebGPU guarantees."""
 
 
+_FRAGMENT = {
+    "gl_FragCoord", "gl_FrontFacing", "gl_PointCoord", "gl_SampleID", "gl_FragDepth", "gl_FragDepthEXT", "gl_FragColor",
+    "gl_FragData",
+}  # fmt: skip
+"""Those that fragment shaders alone have."""
+
+
+_SAMPLES = ("GL_OES_sample_variables", "GL_ANDROID_extension_pack_es31a")
+"""The extensions that have gl_SampleID."""
+
+
+def check_stage(context: CheckContext, name: s.Name) -> None:
+    """Reports a variable that a vertex shader of GLSL ES, or the version, does not have."""
+    text, language = name.text, context.language
+    if context.es and language.vertex and text in _FRAGMENT:
+        raise context.fail(name.span, f"'{text}' belongs to fragment shaders", "write it in the other stage")
+    if text == "gl_SampleID" and 0 < context.es < 320 and language.extensions.isdisjoint(_SAMPLES):
+        hint = "write #version 320 es, or #extension GL_OES_sample_variables : require"
+        raise context.fail(name.span, "gl_SampleID needs GLSL ES 3.20", hint)
+
+
 def check_colors(context: CheckContext) -> None:
-    """Reports the second of gl_FragColor and gl_FragData in GLSL ES: a shader writes one of them."""
+    """Reports colours of GLSL ES that have no place of their own.
+
+    A shader writes gl_FragColor or gl_FragData; several outputs have locations, from 3.00 on (section 4.3.8.2).
+    """
     colors = [context.variables[name] for name in ("gl_FragColor", "gl_FragData") if name in context.variables]
     if context.es and len(colors) > 1:
         last = max(colors, key=lambda variable: variable.span[1:3])
         message = "a shader of GLSL ES has either gl_FragColor or gl_FragData"
         context.reporter.error(last.span, message, "write gl_FragData[0] for gl_FragColor")
+    if context.es < 300 or context.language.vertex or any("blend_func" in name for name in context.language.extensions):
+        return
+    taken: set[int] = set()
+    outputs = [each for each in context.variables.values() if each.storage == "out" and not each.builtin]
+    for variable in outputs if len(outputs) > 1 else ():
+        places = set(range(variable.location, variable.location + passed_locations(variable.type)))
+        if variable.location < 0:
+            message = f"'{variable.name}' needs a location, as this shader has several outputs"
+            context.reporter.error(variable.span, message, "write layout(location = 0) before it")
+        elif places & taken:
+            message = f"'{variable.name}' has the location of another output"
+            context.reporter.error(variable.span, message, "choose another location")
+        taken |= places
 
 
 def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
@@ -95,6 +132,7 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
         return depths
     if text not in BUILTIN_VARIABLES:
         return None
+    check_stage(context, name)
     type_, storage = BUILTIN_VARIABLES[text]
     context.variables[text] = ir.Variable(text, type_, storage, None, _SAME.get(text, text), "", -1, "", name.span)
     value = context.globals[text] = GlobalValue(type_, "", writable=storage == "out")

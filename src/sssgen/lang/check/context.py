@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.spans import Span
 from sssgen.ir.types import FLOAT, VOID, Struct, Type
 from sssgen.ir.walk import statements
 from sssgen.lang import shadertoy
@@ -25,6 +27,10 @@ class Language(NamedTuple):
     """Whether it is a compute shader by its name, also without the size of its workgroup"""
     extensions: frozenset[str] = frozenset()
     """The names of the extensions that it asks for"""
+    desktop: int = 0
+    """The version of desktop GLSL that the file names, or 0"""
+    precisions: Mapping[Span, str] = MappingProxyType({})
+    """The precisions of the types in GLSL ES, by their places"""
 
 
 class Typed(NamedTuple):
@@ -94,6 +100,10 @@ class CheckContext:
         self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]
         """Checks an expression; the checker of expressions sets it."""
+        self.struct_precisions: dict[str, str] = {}
+        """The precisions of the members of structs, by the struct's name."""
+        self.sequences = 0
+        """The number of comma operators so far."""
         self.structs: dict[str, Struct] = {}
         self.struct_declarations: list[ir.StructDecl] = []
         self.functions: dict[str, list[Signature]] = {}

@@ -75,6 +75,11 @@ def names_of_file(file: s.File) -> set[str]:
     return names
 
 
+def precision_of(context: CheckContext, type_: s.TypeName) -> str:
+    """The precision of a type in GLSL ES, of a struct those of its members; '' where it is unknown."""
+    return context.language.precisions.get(type_.span) or context.struct_precisions.get(type_.name, "")
+
+
 _NOT_OF_MEMBERS = ("const", "uniform", "in", "out", "inout", "attribute", "varying", "buffer", "shared")
 """Qualifiers of variables, which members of structs do not have."""
 
@@ -92,6 +97,9 @@ def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = 
     fields: dict[str, Field] = {}
     for member in struct.members:
         if member.type.struct is not None:
+            if context.es:
+                message = "GLSL ES has no structs that are declared inside of structs"
+                raise context.fail(member.type.span, message, "declare it before this one")
             declare_struct(context, member.type.struct, local)
         type_, quantity = named_type(context, member.type)
         if words := [word for word in member.qualifiers.keywords if word in _NOT_OF_MEMBERS]:
@@ -107,6 +115,7 @@ def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = 
             if isinstance(field_type, Sampler) or field_type == VOID:
                 raise context.fail(label.span, f"a member cannot be {a_type(field_type)}")
             fields[label.text] = Field(label.text, field_type, quantity)
+    context.struct_precisions[name] = " ".join([precision_of(context, member.type) for member in struct.members])
     struct_type = Struct(name, tuple(fields.values()))
     if local:
         scope[struct.name.text] = struct_type

@@ -6,12 +6,12 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.constant_expressions import zero
 from sssgen.ir.rules import returns
 from sssgen.ir.signatures import resolve
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type, spell
+from sssgen.ir.types import VOID, Sampler, spell
 from sssgen.lang.check.context import FunctionContext
 from sssgen.lang.check.declared_names import check_global_name, check_not_reserved
 from sssgen.lang.check.name_scope import Signature
 from sssgen.lang.check.statement_checker import StatementChecker
-from sssgen.lang.check.type_names import array_type, named_type
+from sssgen.lang.check.type_names import array_type, holds_array, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 from sssgen.lang.version_rules import first_version
@@ -72,7 +72,7 @@ class FunctionChecker:
         if context.es == 100:
             if first == 100 and resolve(name, [param.type for param in function.params]) is not None:
                 raise context.fail(function.span, f"'{function.key}' is a builtin function", "give it another name")
-            if _holds_array(function.result):
+            if holds_array(function.result):
                 message = f"a function of GLSL ES 1.00 cannot return {a_type(function.result)}, which has an array"
                 raise context.fail(function.span, message, "return it by an out parameter, or write #version 300 es")
 
@@ -151,10 +151,3 @@ def _signature(function: ir.Function, constants: tuple[bool, ...] = ()) -> Signa
         function.span,
         constants,
     )
-
-
-def _holds_array(type_: Type) -> bool:
-    """Whether it is an array, or a struct with one in it."""
-    if isinstance(type_, Struct):
-        return any(_holds_array(field.type) for field in type_.fields)
-    return isinstance(type_, Array)

@@ -6,13 +6,13 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import IMAGES, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
 from sssgen.lang.check.constant_values import constant_value, is_constant
-from sssgen.lang.check.declared_names import check_global_name, declare_struct
+from sssgen.lang.check.declared_names import check_global_name, declare_struct, precision_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.image_checker import declare_image
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
-from sssgen.lang.check.type_names import array_type, named_element, named_type
+from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type
 from sssgen.lang.check.uniform_hints import check_hints
 from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
@@ -63,6 +63,7 @@ class GlobalChecker:
         if "uniform" in keywords and context.plain and declaration.type.name in IMAGES:
             declare_image(self.expressions, declaration, external.doc)
         elif "uniform" in keywords:
+            self.interface.check_uniform(declaration.qualifiers)
             for declarator in declaration.declarators:
                 elements = self.interface.textures(declaration, declarator)
                 for index, element in enumerate(elements):
@@ -89,7 +90,10 @@ class GlobalChecker:
         hints, texel_quantity = check_hints(context, declarator, type_, default)
         quantity = quantity or texel_quantity
         location = uniform_location(context, declaration.qualifiers, name, type_, element)
-        uniform = ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path, location=location)
+        precision = precision_of(context, declaration.type)
+        uniform = ir.Uniform(
+            name.text, type_, default, hints, quantity, doc, name.span, path, location=location, precision=precision
+        )
         context.globals[name.text] = GlobalValue(type_, quantity, extent=of_uniform(uniform)[:2])
         self.uniforms.append(uniform)
 
@@ -117,6 +121,7 @@ class GlobalChecker:
         check_global_name(context, name)
         if declarator.value is None:
             raise context.fail(name.span, f"const '{name.text}' needs a value")
+        sequences = context.sequences
         if is_macro:
             value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check(value).expr
@@ -127,6 +132,7 @@ class GlobalChecker:
             value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check_as(value, type_, quantity, f"'{name.text}'")
             )
+        check_sequences(context, sequences, declarator.value.span)
         if prelude or not is_constant(context, value):
             message = f"the value of const '{name.text}' is not constant"
             raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")

@@ -32,6 +32,8 @@ class MemoryChecker:
     def __init__(self, expressions: ExpressionChecker) -> None:
         self.context = expressions.context
         self.expressions = expressions
+        self.sizes: dict[str, int] = {}
+        """The size of the workgroup, as far as the file states it"""
 
     def layout(self, layout: s.LayoutSyntax) -> None:
         """`layout(local_size_x = 8, local_size_y = 8) in;`, and the order in which uniform blocks store matrices."""
@@ -54,7 +56,9 @@ class MemoryChecker:
             if number is None or not 1 <= number <= MAX_INVOCATIONS:
                 message = f"a {name} must be a constant from 1 to {MAX_INVOCATIONS}"
                 raise context.fail(sizes[name].span, message, "write layout(local_size_x = 64) in;")
-            numbers.append(number)
+            if name in sizes and self.sizes.setdefault(name, number) != number:
+                raise context.fail(sizes[name].span, f"{name} is already {self.sizes[name]}", "write it once")
+            numbers.append(self.sizes.get(name, 1))
         if math.prod(numbers) > MAX_INVOCATIONS:
             raise context.fail(
                 layout.qualifiers.span,

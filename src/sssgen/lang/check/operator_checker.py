@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import operator_type, prefix_type
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Sampler, Scalar, Void, kind_of
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Sampler, Scalar, Void, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext, Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import common_kind, wrapped
+from sssgen.lang.check.type_names import holds_array
 from sssgen.lang.check.wording import a_type, mixed_hint
 from sssgen.lang.syntax import tree as s
 
@@ -63,8 +64,9 @@ class OperatorChecker:
                 f"'{infix.op}' is not defined for {a_type(left.expr.type)} and {a_type(right.expr.type)}",
                 mixed_hint(left.expr, right.expr, infix.op),
             )
-        if self.context.es == 100 and isinstance(one.type, Array):
-            raise self.context.fail(infix.span, "GLSL ES 1.00 compares no arrays", "compare each element")
+        if self.context.es == 100 and infix.op in ("==", "!=") and holds_array(one.type):
+            message = f"GLSL ES 1.00 compares no arrays, but this is {a_type(one.type)}"
+            raise self.context.fail(infix.span, message, "compare each element")
         quantity = ""
         if left.quantity or right.quantity:
             quantity = combined_quantity(self.context, infix.op, left, right, infix.span)

@@ -20,6 +20,7 @@ from sssgen.lang.syntax import tree as s
 
 _MEMBER = {"uniform", "lowp", "mediump", "highp"}
 _MEMBER_LAYOUT = frozenset({"row_major", "column_major", "offset", "align"})
+_INTERPOLATION = ("flat", "smooth", "centroid", "noperspective")
 _STORED = ("std140", "shared", "packed")
 _BLOCK_LAYOUT = _MEMBER_LAYOUT | {*_STORED, "scalar", "binding", "set", "push_constant", "location"}
 """What `layout(…)` may say of a uniform block and its members, in OpenGL or Vulkan."""
@@ -54,6 +55,8 @@ class ShaderInterface:
                     raise context.fail(
                         span, "gl_FragCoord counts from the bottom: origin_upper_left is not possible", hint
                     )
+                if name in ("gl_FragColor", "gl_FragData") and declaration.type.name != name:
+                    raise context.fail(span, f"'{name}' cannot be declared again", "leave the declaration out")
                 builtin_variable(context, declarator.name)  # redeclared for its qualifiers
                 continue
             check_global_name(context, declarator.name)
@@ -61,6 +64,9 @@ class ShaderInterface:
             if type_ == VOID or isinstance(type_, Sampler):
                 hint = "write uniform before it" if isinstance(type_, Sampler) else ""
                 raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}", hint)
+            if context.es and storage == "in" and self.vertex and isinstance(type_, Array):
+                message = "GLSL ES has no arrays of attributes"
+                raise context.fail(span, message, "declare an input for each element")
             if storage in ("in", "out") and isinstance(unnested(type_)[0], Struct):
                 self.check_struct(type_, storage, span, bool(block))
             value = None
@@ -89,6 +95,12 @@ class ShaderInterface:
         if not context.es or storage not in ("in", "out"):
             return
         span, kind = declaration.qualifiers.span, kind_of(element)
+        is_passed = storage == ("out" if self.vertex else "in")
+        if context.es < 310 and is_passed and any(item == "location" for item, _ in declaration.qualifiers.layout):
+            message = "what stages pass on has no location before GLSL ES 3.10"
+            raise context.fail(span, message, "leave the layout out: its name connects the stages")
+        if context.es == 100 and "attribute" in keywords and kind != "float":
+            raise context.fail(span, f"an attribute is a float, a vector or a matrix, but this is {a_type(element)}")
         if "attribute" in keywords and not self.vertex:
             raise context.fail(span, "a fragment shader has no attributes", "pass it on by a varying")
         if "invariant" in keywords and storage == "in" and context.es >= 300:
@@ -180,6 +192,17 @@ class ShaderInterface:
         context.texture_arrays[name.text] = names
         return [replace(declarator, name=replace(name, text=element), lengths=()) for element in names]
 
+    def check_uniform(self, qualifiers: s.Qualifiers) -> None:
+        """Reports what a uniform of GLSL ES cannot be."""
+        context = self.context
+        if not context.es:
+            return
+        if word := next((word for word in qualifiers.keywords if word in _INTERPOLATION), ""):
+            raise context.fail(qualifiers.span, f"'{word}' belongs to what stages pass on, not to a uniform")
+        if context.es < 310 and any(item == "binding" for item, _ in qualifiers.layout):
+            hint = "leave it out: the program sets the binding"
+            raise context.fail(qualifiers.span, "a uniform has no binding before GLSL ES 3.10", hint)
+
     # Blocks
 
     def members(self, block: s.BlockSyntax) -> list[s.GlobalSyntax]:
@@ -190,6 +213,7 @@ class ShaderInterface:
         if block.name.text == "gl_PerVertex":
             return []
         if "uniform" in keywords:
+            self.check_uniform(block.qualifiers)
             self.check_uniform_block(block)
         members: list[s.GlobalSyntax] = []
         # both stages of a program know the names of the block and of its members
@@ -225,7 +249,9 @@ class ShaderInterface:
                 raise context.fail(member.type.span, "a block cannot contain textures", hint)
             if member.type.struct is not None:
                 raise context.fail(member.type.span, "a block cannot declare a struct", "declare it before the block")
-            self.check_qualifiers(member.qualifiers, "a member of a uniform block", _MEMBER, _MEMBER_LAYOUT)
+            layouts = _MEMBER_LAYOUT - {"offset", "align"} if 0 < context.es < 310 else _MEMBER_LAYOUT
+            qualifiers = replace(member.qualifiers, span=member.type.span)
+            self.check_qualifiers(qualifiers, "a member of a uniform block", _MEMBER, layouts)
 
     def check_qualifiers(self, qualifiers: s.Qualifiers, what: str, keywords: set[str], layout: frozenset[str]) -> None:
         """Reports a qualifier that `what` cannot have."""

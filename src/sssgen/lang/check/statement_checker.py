@@ -26,7 +26,7 @@ from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.memory_checker import stored_directly
-from sssgen.lang.check.type_names import array_type, named_element, named_type
+from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -126,8 +126,10 @@ class StatementChecker:
             declared = self.expressions.declared_type(type_, declaration.type, declarator)
             value, constant = None, None
             if declarator.value is not None:
+                sequences = context.sequences
                 value = self.expressions.check_as(declarator.value, declared, quantity, f"'{name.text}'")
                 if const:
+                    check_sequences(context, sequences, declarator.value.span)
                     constant = constant_value(context, value)
                     if context.es and not is_constant(context, value):
                         message = f"the value of const '{name.text}' is not constant, as GLSL ES requires"

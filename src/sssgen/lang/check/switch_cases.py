@@ -54,7 +54,8 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
             raise context.fail(labels[0].span, "this switch has two defaults")
         else:
             default = case
-    if context.es and groups and not groups[-1][1]:
+    needs_statement = context.es or context.language.desktop in range(130, 331)
+    if needs_statement and groups and not groups[-1][1]:
         raise context.fail(groups[-1][0][-1].span, "nothing follows this label", "write break; after it")
     return [*cases, default] if default is not None else cases
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from sssgen.ir.types import BY_NAME, IMAGES, Array, Matrix, Sampler, Type, Void, spell, unnested, with_article
+from sssgen.ir.spans import Span
+from sssgen.ir.types import BY_NAME, IMAGES, Array, Matrix, Sampler, Struct, Type, Void, spell, unnested, with_article
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
@@ -65,7 +66,9 @@ def array_type(
         raise context.fail(lengths[0].span, message)
     total = math.prod(unnested(element)[1])
     for index, length in reversed([*enumerate(lengths)]):
+        before = context.sequences
         count = constant_int(context, length) if not isinstance(length, s.Unsized) else None
+        check_sequences(context, before, length.span)
         if isinstance(length, s.Unsized) and index < len(items):
             count = items[index]
         total *= count or 0
@@ -73,3 +76,17 @@ def array_type(
             raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
         element = Array(element, count)
     return element
+
+
+def holds_array(type_: Type) -> bool:
+    """Whether it is an array, or a struct with one in it."""
+    if isinstance(type_, Struct):
+        return any(holds_array(field.type) for field in type_.fields)
+    return isinstance(type_, Array)
+
+
+def check_sequences(context: CheckContext, before: int, span: Span) -> None:
+    """Reports a comma operator in a constant expression of GLSL ES 3.00 and later: `before` is the number of those
+    before it."""
+    if context.es >= 300 and context.sequences > before:
+        raise context.fail(span, "the value of ',' is not constant in GLSL ES", "leave the comma out")

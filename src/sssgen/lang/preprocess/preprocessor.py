@@ -136,7 +136,7 @@ class _Run:
         self.comments: dict[str, list[Comment]] = {}
         self.texts: dict[str, str] = {}
         self.repeated: set[str] = set()  # files that were read more than once
-        self.version, self.profile = 0, ""
+        self.version, self.profile, self.version_file = 0, "", ""
         self.text_macros: set[str] = set()  # that the text itself defines
         self.extensions: list[str] = []
         self.pragmas: list[str] = []
@@ -402,11 +402,11 @@ class _Run:
         if int(match[1]) not in versions:
             hint = f"the versions{' of GLSL ES' if match[2] == 'es' else ''} are {', '.join(map(str, versions))}"
             self.error(place, f"there is no version {arguments}", hint)
-        if self.version not in (0, int(match[1])):
+        if self.version not in (0, int(match[1])) or (self.is_es and place.file == self.version_file):
             self.error(place, f"the version is already {self.version}")
         elif self.tokens or self.text_macros:
             self.error(place, "#version must be the first line", "only comments may be above it")
-        self.version = int(match[1])
+        self.version, self.version_file = int(match[1]), place.file
         self.profile = "es" if self.version == 100 else match[2] or ""
         for name in builtin_macros(0, ""):
             self.expander.macros.pop(name, None)

@@ -112,7 +112,7 @@ class Builder:
     def layout_item(self, children: list[Any]) -> tuple[str, s.Expression | None]:
         name, sign, value = children
         self.require_equals(sign)
-        return name.text, value
+        return name.text.lower(), value  # older GLSL and GLSL ES do not tell case apart here
 
     def refuse(self, qualifiers: s.Qualifiers, keywords: frozenset[str], what: str) -> None:
         """Reports qualifiers that cannot be before `what`."""
@@ -185,7 +185,7 @@ class Builder:
 
     def block(self, children: list[Any]) -> s.Compound:
         start, *inner, end = children
-        statements = tuple([self.as_statement(child) for child in inner if child is not None])
+        statements = tuple([self.as_statement(child) for child in _filled(inner) if child is not None])
         span = _join(start.span, end.span)
         return s.Compound(statements, span, self.deeper(span, *statements))
 
@@ -336,6 +336,14 @@ class Builder:
 
     def type_name(self, children: list[Any]) -> s.TypeName:
         return s.TypeName(children[0].text, (), children[0].span)
+
+
+def _filled(statements: list[Any]) -> list[Any]:
+    """The statements of a block; an empty one behind a label stays: it makes the label's case one with statements."""
+    return [
+        s.Compound((), before.span, 0) if statement is None and isinstance(before, s.Label) else statement
+        for before, statement in zip([None, *statements], statements, strict=False)
+    ]
 
 
 def as_type(expression: Any) -> Any:

@@ -40,6 +40,10 @@ def disagreements(vertex: Module, fragment: Module) -> list[Unsupported]:
         if there != here:
             message = f"the uniform '{uniform.source}' is {there} in {place(other.span)}, but {here} here"
             wrong.append(Unsupported(message, uniform.span, hint="it is one variable of the program: declare it alike"))
+        elif uniform.precision != other.precision and uniform.precision and other.precision:
+            message = f"the uniform '{uniform.source}' is {other.precision} in {place(other.span)}, "
+            message += f"but {uniform.precision} here"
+            wrong.append(Unsupported(message, uniform.span, hint="write the same precision in both stages"))
     return wrong
 
 
