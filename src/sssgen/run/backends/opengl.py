@@ -27,7 +27,8 @@ from sssgen.run.compilers.gl_driver import DriverGL, messages
 from sssgen.targets.runtime.numpy_textures import Texture
 
 HEADS = {
-    "glsl-330": "#version 330 core\n#line 1\n",
+    # whole shaders with this function are of version 4.30; drivers without the extension ignore the line
+    "glsl-330": "#version 330 core\n#extension GL_ARB_texture_query_levels : enable\n#line 1\n",
     "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\n"
     "precision highp sampler2D;\nprecision highp sampler3D;\nprecision highp samplerCube;\n"
     "#line 1\n",
