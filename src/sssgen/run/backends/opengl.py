@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import re
 from collections import OrderedDict
 from collections.abc import Collection, Mapping
 from itertools import count
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.run import compilers
 from sssgen.run.backends.backend_interface import (
     Array,
@@ -27,12 +29,13 @@ from sssgen.run.compilers.gl_driver import DriverGL, messages
 from sssgen.targets.runtime.numpy_textures import Texture
 
 HEADS = {
-    # whole shaders with this function are of version 4.30; drivers without the extension ignore the line
-    "glsl-330": "#version 330 core\n#extension GL_ARB_texture_query_levels : enable\n#line 1\n",
+    "glsl-330": "#version 330 core\n#line 1\n",
     "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp int;\n"
     "precision highp sampler2D;\nprecision highp sampler3D;\nprecision highp samplerCube;\n"
     "#line 1\n",
 }
+_LATER = re.compile(rf"\b({'|'.join(name for name, row in BUILTINS.items() if row.later_glsl)})\(")
+"""Functions of GLSL 4.30: whole shaders with one of them state that version."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 _KEPT = 64
 """The most compiled programs of a process; the oldest is released first."""
@@ -76,6 +79,7 @@ class OpenGL(DrawingBackend):
         """The GLSL of the two stages."""
         head = HEADS[self.target.name]
         fragment = drawing.fragment.text.text
+        head = head.replace("330", "430") if _LATER.search(fragment) else head
         fragment = fragment if fragment.startswith("#version") else head + fragment
         vertex = drawing.vertex.text.text if drawing.vertex else head + _SCREEN
         return vertex, fragment
