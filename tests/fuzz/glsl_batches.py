@@ -145,6 +145,8 @@ class Runner:
         self.seconds: defaultdict[str, float] = defaultdict(float)
         self.head = ""
         """Declarations that all programs share."""
+        self.running: tuple[str, Sequence[Case]] | None = None
+        """The target and the programs that ran last."""
 
     def backend(self, name: str) -> Backend:
         if name not in self.backends:
@@ -180,6 +182,8 @@ class Runner:
     def failure(self, target: str, error: Exception) -> Failure:
         if isinstance(error, SssgenError):
             message = "; ".join(diagnostic.message for diagnostic in error.diagnostics[:2])
+            if re.search(r"did not finish within \d", message):
+                return Failure(target, "tool", message, "timeout")
             if "Assertion `" in message or "spirv-val: error" in message:
                 # the compiler accepted the text, and failed itself, or made SPIR-V that breaks its rules
                 return Failure(target, "tool", message)
@@ -190,6 +194,7 @@ class Runner:
         return Failure(target, "crash", f"{type(error).__name__}: {error}")
 
     def of_target(self, target: str, module: Module, cases: Sequence[Case]) -> list[tuple[Case, Failure]]:
+        self.running = target, cases
         try:
             results = self.results(target, module, cases)
         except Exception as error:
@@ -218,6 +223,8 @@ class Runner:
           reads the text as it is meant, and what remains of the first way is at fault: spirv-cross, or OpenGL's GLSL.
           Another compiler of HLSL would show less: where the language leaves an order open, each may take its own.
         - GLSL is right in the same driver, or in NumPy, as glslang reads it: from what spirv-cross makes of its SPIR-V.
+        - GLSL is right in that way, and wrong in OpenGL, in the same lanes: a driver compiles all texts alike. It
+          moves the terms of a sum, such as `1.0 - x + 1.0e-10`.
         """
         if target == "numpy":
             return ""
@@ -227,7 +234,17 @@ class Runner:
             return "right in Vulkan"
         if target in ("gl", "gl-es") and self.is_right_reread(target, module, cases, index):
             return "right as glslang reads it"
+        if target in ("webgpu", "hlsl") and self.is_wrong_in_opengl(module, cases, index, lanes):
+            return "as in OpenGL"
         return ""
+
+    def is_wrong_in_opengl(self, module: Module, cases: Sequence[Case], index: int, lanes: Sequence[int]) -> bool:
+        """Whether a driver computes these lanes wrong of a text of GLSL, too, that is right as glslang reads it."""
+        try:
+            wrong = cases[index].wrong_lanes(self.results("gl", module, cases)[index])
+        except (SssgenError, CompilerMissing):
+            return False
+        return set(lanes) <= set(wrong) and self.is_right_reread("gl", module, cases, index)
 
     def is_right_in_vulkan(self, module: Module, cases: Sequence[Case], index: int) -> bool:
         """Whether Vulkan computes all lanes of a case right; not where Vulkan is missing or fails."""

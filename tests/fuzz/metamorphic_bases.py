@@ -1,7 +1,7 @@
 """Functions of GLSL files as a base of rewrites: their inputs, and the results that every rewrite must have.
 
 The results are those of the interpreter of `sssgen transpile --verify`, in float64, in lanes in which no operation is
-undefined and rounding does not move them.
+undefined, no variable is read before it is written, and rounding does not move them.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from qualification.ir_mutations import mutated, mutations
 from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.lane_interpreter import Run
 from sssgen.analyse.verify.lane_program import Program
+from sssgen.analyse.verify.lane_values import DTYPES, Value, build_value
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.plain_inputs import Source, draw_inputs, select_lanes, suggest_numbers
 from sssgen.analyse.verify.plain_probes import probe_functions
@@ -53,6 +54,17 @@ LARGEST = 4000
 """The most expressions of a function with all that it calls: tables of colours take minutes to compile."""
 TRIES = 3
 """How many functions of a file are tried."""
+
+
+MARKS = {"float": np.nan, "int": 0x5A5A5A5A, "uint": 0xA5A5A5A5, "bool": True}
+"""What a variable may have before it is written, by kind."""
+
+
+class MarkedRun(Run):
+    """A run that has marks, not 0, in variables that were not written: a result that they change is undefined."""
+
+    def unwritten(self, type_: Type) -> Value:
+        return build_value(type_, lambda shape, kind: np.full((*shape, self.lanes), MARKS[kind], DTYPES[kind]))
 
 
 class Base(NamedTuple):
@@ -133,10 +145,12 @@ def with_results(base: Base) -> Base | None:
     if program.neighbours:
         return None
     lanes = next(iter(base.arguments.values())).shape[-1]
-    run = Run(program, lanes, base.arguments, limit=ROUNDS)
+    runs = [kind(program, lanes, base.arguments, limit=ROUNDS) for kind in (Run, MarkedRun)]
     try:
-        expected = np.asarray(run.result(base.key, base.arguments))
-        good = ~(run.undefined | run.endless)
+        expected, marked = [np.asarray(run.result(base.key, base.arguments)) for run in runs]
+        good = (expected == marked).reshape(-1, lanes).all(axis=0)
+        for run in runs:
+            good &= ~(run.undefined | run.endless)
         places = np.flatnonzero(good)[: 3 * LANES]
         if len(places) < FEWEST:
             return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
@@ -10,10 +11,12 @@ from random import Random
 import pytest
 
 import metamorphic
+import metamorphic_batches
 from glsl_batches import TARGETS
 from ir_rewrites import rewritten
 from known_answers import SWITCHES
 from metamorphic_bases import Base, base_from, mutated_case, rewritten_case, same_case
+from metamorphic_batches import Job, Worker
 from metamorphic_cases import KnownCase, MetamorphicRunner, known_case
 from sssgen.ir.text import print_module
 from sssgen.run.backends import Backend
@@ -67,7 +70,7 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Base:
 
 def failures(runner: MetamorphicRunner, cases: list[KnownCase]) -> list[str]:
     return [
-        f"{metamorphic.title(case, failure)}\n{failure.message}\n{case.text}"
+        f"{metamorphic_batches.title(case, failure)}\n{failure.message}\n{case.text}"
         for case, failure in runner.failures(cases)
         if failure.kind != "tool"
     ]
@@ -137,3 +140,48 @@ def test_a_run_is_resumed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "64 programs (64 × known answer) × 1 targets (numpy): 0 faults" in capsys.readouterr().out
     lines = (tmp_path / "done_3.jsonl").read_text("utf-8").splitlines()
     assert sorted(json.loads(line)["number"] for line in lines) == [0, 1]
+
+
+def test_a_run_ends_with_the_programs_not_with_the_batches(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "marched.glsl").write_text(TEXT, encoding="utf-8")
+    arguments = ["--glsl", str(tmp_path), "--targets", "numpy", "-o", str(tmp_path), "--seed", "4", "--programs", "96"]
+    assert metamorphic.main(arguments) == 0
+    assert "rewrite" in capsys.readouterr().out
+    counts = [sum(result.programs.values()) for result in metamorphic.results_in(tmp_path / "done_4.jsonl").values()]
+    assert sum(counts) >= 96 and sum(counts[:-1]) < 96
+
+
+def test_a_batch_that_takes_too_long_is_reported_and_the_next_one_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = Job(3, 0, ("numpy",), (), str(tmp_path), 600.0)
+    worker = Worker()
+    try:
+        assert worker.run(job).failures == [] and worker.runner is not None
+        monkeypatch.setattr(worker.runner, "results", lambda *_: time.sleep(600.0))
+        assert worker.run(job._replace(limit=2.0)).failures == ["numpy tool batch timeout"]
+        assert len(list(tmp_path.glob("numpy_tool_known_answer_timeout*.glsl"))) == metamorphic_batches.BATCH
+        assert worker.run(job).failures == []
+    finally:
+        if worker.runner is not None:
+            worker.runner.close()
+
+
+def test_a_fault_that_opengl_has_too_is_one_of_the_driver(
+    runners: dict[str, MetamorphicRunner], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = known_case(Random("few 3"), 3)
+    runner = runners["numpy"]
+    monkeypatch.setattr(runner, "targets", ("webgpu",))
+    monkeypatch.setattr(runner, "results", lambda *_: [case.expected + 1])
+    for reread, expected in ((True, ("tool", "as in OpenGL")), (False, ("wrong", ""))):
+        monkeypatch.setattr(runner, "is_right_reread", lambda *_, right=reread: right)
+        ((_, failure),) = runner.failures([case])
+        assert (failure.kind, failure.cause) == expected
+
+
+def test_what_depends_on_an_unwritten_variable_is_not_compared(tmp_path: Path) -> None:
+    path = tmp_path / "unwritten.glsl"
+    path.write_text("float f(float x) { float y; return x > 0.0 ? x : y; }", encoding="utf-8")
+    bases = [base for seed in range(8) if (base := base_from(path, tmp_path, Random(seed))) is not None]
+    assert bases and all((base.arguments[base.params[0].name] > 0.0).all() for base in bases)

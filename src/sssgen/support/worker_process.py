@@ -20,7 +20,11 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping
+from pathlib import Path
 from typing import IO, Any
+
+ENDING = 10.0
+"""How many seconds are waited for a killed process: one inside a driver that hangs may never end."""
 
 
 class LostError(Exception):
@@ -71,7 +75,8 @@ class Process:
             with contextlib.suppress(OSError):
                 assert pipe is not None
                 pipe.close()
-        process.wait()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(ENDING)
 
     def _answer(self) -> Any:
         process = self.process
@@ -101,10 +106,21 @@ class Process:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
+    """Kills the group of a process and those of its descendants, which may have processes of this kind."""
     if hasattr(os, "killpg"):
-        with contextlib.suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
+        for pid in _descendants(process.pid):
+            with contextlib.suppress(OSError):
+                os.killpg(pid, signal.SIGKILL)  # fails for those that are in the group of another
     process.kill()
+
+
+def _descendants(pid: int) -> list[int]:
+    """A process and what it has started, as far as the system tells (Linux)."""
+    children: list[int] = []
+    for path in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            children += map(int, path.read_text("ascii").split())
+    return [pid, *(descendant for child in children for descendant in _descendants(child))]
 
 
 def _ending(status: int) -> str:
