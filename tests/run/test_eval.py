@@ -16,8 +16,9 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.run import backends, compilers
-from sssgen.run.backends import Backend
+from sssgen.run.backends import Backend, Text
 from sssgen.run.backends.backend_process import BackendProcess
+from sssgen.run.backends.dispatch import Dispatch, by_webgpu
 from sssgen.run.evaluate import input_files as inputs
 from sssgen.run.evaluate.deviation import deviation, errors
 from sssgen.run.evaluate.evaluation import evaluate
@@ -293,6 +294,25 @@ def test_a_lost_device_is_replaced(backend: Callable[[str], Backend], monkeypatc
         with pytest.raises(SssgenError, match="webgpu: the device was lost twice"):
             evaluate(technique, write_inputs, gpu)
     assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
+
+
+def test_a_device_that_does_nothing_is_noticed(
+    backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Imitates a device that another program blocks: what is submitted is not executed, and nothing is reported."""
+    gpu: Any = backend("webgpu")
+    technique, write_inputs = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
+    assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
+    kernel = "@group(0) @binding(0) var<storage, read_write> b: array<u32>; @compute @workgroup_size(1) fn main() {}"
+    dispatch = Dispatch(Text(kernel), (1, 1, 1), (1, 1, 1), {"b": np.zeros(4, np.uint32)}, {"b": 0})
+    with monkeypatch.context() as patch:
+        patch.setattr(type(gpu.gpu.queue), "submit", lambda *_: None)
+        with pytest.raises(SssgenError, match="webgpu: the device was lost twice"):
+            evaluate(technique, write_inputs, gpu)
+        with pytest.raises(SssgenError, match="webgpu: the device did not execute the shader"):
+            by_webgpu(gpu, dispatch)
+    assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
+    assert by_webgpu(gpu, dispatch)["b"].tolist() == [0, 0, 0, 0]
 
 
 def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> None:

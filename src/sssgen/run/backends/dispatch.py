@@ -10,6 +10,7 @@ import numpy as np
 from sssgen.run.backends.backend_interface import Array, Block, Bound, Text, backend_failure, refusal
 from sssgen.run.backends.opengl import OpenGL
 from sssgen.run.backends.webgpu import WebGPU
+from sssgen.run.backends.webgpu_mark import Mark
 from sssgen.run.backends.webgpu_plan import BlockPlan, Plan, layout_entries, texture_plan
 from sssgen.run.compilers.gl_driver import messages
 
@@ -105,12 +106,17 @@ def by_webgpu(backend: WebGPU, dispatch: Dispatch) -> dict[str, Array]:
         work.set_bind_group(group, gpu.create_bind_group(layout=layouts[group], entries=entries))
         work.dispatch_workgroups(*dispatch.groups)
         work.end()
+        mark = Mark(gpu, encoder)
         gpu.queue.submit([encoder.finish()])
-        return {name: _like(gpu.queue.read_buffer(store), dispatch.buffers[name]) for name, store in stores.items()}
+        after = {name: _like(gpu.queue.read_buffer(store), dispatch.buffers[name]) for name, store in stores.items()}
     except wgpu.GPUError as error:
         if complaints := backend.naga.complaints(plan.code):
             raise refusal(backend.name, dispatch.text, complaints) from None
         raise backend_failure(backend.name, f"{type(error).__name__}: {error}") from error
+    if not mark.is_there:
+        backend.renew()
+        raise backend_failure(backend.name, "the device did not execute the shader", "does another program block it?")
+    return after
 
 
 def _like(data: Any, array: Array) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from sssgen.run import compilers
 from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refusal
 from sssgen.run.backends.draw_backend import DrawingBackend
+from sssgen.run.backends.webgpu_mark import Mark
 from sssgen.run.backends.webgpu_plan import Plan, TexturePlan, layout_entries, plan
 from sssgen.run.compilers import CompilerMissing
 from sssgen.run.compilers.naga import Naga, find
@@ -60,11 +61,13 @@ class WebGPU(DrawingBackend):
         import wgpu
 
         try:
-            return self.execute(drawing_plan)
+            picture = self.execute(drawing_plan)
+            if picture is None:
+                self.renew()
+            return picture
         except wgpu.GPUError as error:
             if self.is_lost():
-                self.naga.gpu = find().gpu  # the compiler's device is the same
-                self.start(self.naga)
+                self.renew()
                 return None
             messages = self.naga.complaints(drawing_plan.code)
             if not messages and drawing_plan.vertex_code:
@@ -72,6 +75,11 @@ class WebGPU(DrawingBackend):
             if messages:
                 raise refusal(self.name, drawing.fragment.text, messages) from None
             raise backend_failure(self.name, f"{type(error).__name__}: {error}") from error
+
+    def renew(self) -> None:
+        """Takes a new device."""
+        self.naga.gpu = find().gpu  # the compiler's device is the same
+        self.start(self.naga)
 
     def is_lost(self) -> bool:
         """Whether the device is lost."""
@@ -83,8 +91,8 @@ class WebGPU(DrawingBackend):
             return True
         return False
 
-    def execute(self, drawing_plan: Plan) -> Array:
-        """Draws and reads the picture."""
+    def execute(self, drawing_plan: Plan) -> Array | None:
+        """Draws and reads the picture; None where the device did not draw, which it need not report."""
         gpu, size = self.gpu, (drawing_plan.width, drawing_plan.height, 1)
         pipeline, layouts = self.pipeline(drawing_plan)
         target = gpu.create_texture(size=size, format=drawing_plan.format, usage=_TARGET | _FROM_TEXTURE)
@@ -103,11 +111,14 @@ class WebGPU(DrawingBackend):
         else:
             drawing.draw(3)
         drawing.end()
+        mark = Mark(gpu, encoder)
         start = perf_counter()
         gpu.queue.submit([encoder.finish()])
         layout = {"offset": 0, "bytes_per_row": drawing_plan.width * 16, "rows_per_image": drawing_plan.height}
         read = gpu.queue.read_texture({"texture": target}, layout, size)  # waits for the draw
         self.draw_seconds = perf_counter() - start
+        if not mark.is_there:
+            return None
         dtype: Any = np.float32 if drawing_plan.format == "rgba32float" else np.uint32
         return np.frombuffer(read, dtype).reshape(drawing_plan.height, drawing_plan.width, 4)
 
