@@ -47,6 +47,16 @@ RESERVED = {
 }
 """Version of GLSL ES → the words that no text may have."""
 
+_NEWER = "write #version 300 es"
+OTHER_NAME = "choose another name"
+_BEFORE_KEYWORDS = frozenset({";", "{", "}", ")", ":", "else", "invariant"})
+_INSTEAD = {
+    "attribute": "write 'in'",
+    "varying": "write 'out' in a vertex shader, 'in' in a fragment shader",
+    **dict.fromkeys(("switch", "default", "flat"), _NEWER),
+}
+"""What is written in place of a word that another version has, where it stands for what it means there."""
+
 _LATER_OPERATORS = frozenset({"%", "~", "<<", ">>", "&", "|", "^", "%=", "<<=", ">>=", "&=", "|=", "^="})
 """What GLSL ES 1.00 reserves."""
 
@@ -57,6 +67,12 @@ _ORDER = {
 """The place of a qualifier among others, up to GLSL ES 3.00."""
 
 
+def _instead(before: Token | None, token: Token) -> str:
+    """What to do about a reserved word: it is a name, unless a statement or declaration begins with it."""
+    begins = before is None or before.text in _BEFORE_KEYWORDS
+    return _INSTEAD.get(token.text, OTHER_NAME) if begins else OTHER_NAME
+
+
 def check_version(tokens: Sequence[Token], version: int, profile: str, reporter: Reporter) -> None:
     """Reports what the version of a text does not have."""
     for token in tokens:
@@ -65,11 +81,11 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
     if version and profile == "es":
         shown = f"GLSL ES {version // 100}.{version % 100:02}"
         reserved = RESERVED[310 if version > 300 else version]
-        for token in tokens:
+        for before, token in zip([None, *tokens], tokens, strict=False):
             if token.text in reserved:
-                reporter.error(token.span, f"'{token.text}' is a reserved word of {shown}", "choose another name")
+                reporter.error(token.span, f"'{token.text}' is a reserved word of {shown}", _instead(before, token))
         for token in _keywords_as_names(tokens, version):
-            reporter.error(token.span, f"'{token.text}' is a keyword of {shown}", "choose another name")
+            reporter.error(token.span, f"'{token.text}' is a keyword of {shown}", OTHER_NAME)
         if version == 100:
             for token in tokens:
                 if token.text in _LATER_OPERATORS:

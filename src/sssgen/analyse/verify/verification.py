@@ -26,6 +26,7 @@ from sssgen.analyse.verify.machines import Machines, backends_of, start_machines
 from sssgen.analyse.verify.plain_probes import probe_functions
 from sssgen.analyse.verify.stage_variables import MAIN, plain
 from sssgen.analyse.verify.time_limit import TimeLimit
+from sssgen.analyse.verify.unnamed_parameters import with_names
 from sssgen.analyse.verify.verification_report import (
     EVERY,
     TRANSLATIONS,
@@ -65,7 +66,10 @@ def verify(
     written = plain(_scene(text) if options.entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
     module = read(written.text, shown)
-    functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
+    complete = with_names(written.text, _functions(module, shown))
+    if complete != written.text:
+        written, module = written._replace(text=complete), read(complete, shown)
+    functions = _functions(module, shown)
     if options.function:
         functions = _functions_named(options.function, functions, shown)
     cases = probe_functions(module, functions, written.text)
@@ -98,6 +102,11 @@ def verify(
 def unreached(function: Function) -> Row:
     """The row of a function that the time did not suffice for."""
     return Row(title(function), function.span.line, reason="not reached", complete=False)
+
+
+def _functions(module: Module, shown: str) -> list[Function]:
+    """The functions that a file defines."""
+    return [part for part in module.functions if part.body is not None and part.span.file == shown]
 
 
 def _functions_named(name: str, functions: list[Function], shown: str) -> list[Function]:

@@ -1,0 +1,46 @@
+"""`sssgen transpile --verify` of functions without parameters, and of parameters without names."""
+
+from __future__ import annotations
+
+from sssgen.analyse.verify.machines import Machines
+from sssgen.analyse.verify.verification import verify
+from sssgen.analyse.verify.verification_report import Row
+from sssgen.analyse.verify.verified_function import Options
+
+SAMPLES = 200
+UNNAMED = """
+#define NUMBER float
+#define SAME(x) x
+struct Pair { vec2 both; };
+float unnamed;
+float some(NUMBER, const in highp
+  vec2, SAME(int), Pair, float[2], float unnamed_1, int count, inout float more) {
+    more += 1.0;
+    return unnamed_1 * 2.0 + float(count & 3);
+}
+float few(int) { return 3.0; }
+"""
+
+
+def rows(machines: Machines, text: str) -> dict[str, Row]:
+    report = verify(text, "shader.glsl", Options(SAMPLES), machines=machines)
+    return {row.function: row for row in report.rows}
+
+
+def test_parameters_need_no_names(machines: Machines) -> None:
+    results = rows(machines, UNNAMED)
+    assert list(results) == ["some(float,vec2,int,Pair,float[2],float,int,float)", "few(int)"]
+    assert all(row.ok and row.lanes for row in results.values()), results
+
+
+def test_a_function_without_inputs_runs_once(machines: Machines) -> None:
+    text = """
+    float constant() { float s = 0.0; for (int i = 0; i < 300; i++) { s += float(i); } return s; }
+    float slope() { return dFdx(constant()); }
+    uniform float u;
+    float bent() { return u; }
+    """
+    results = rows(machines, text)
+    assert all(row.ok for row in results.values()), results
+    assert [row.lanes for row in results.values()][:2] == [1, 4]
+    assert results["bent()"].lanes > 100
