@@ -29,6 +29,8 @@ from sssgen.lang.syntax import tree as s
 
 _S = TypeVar("_S")
 _T = TypeVar("_T")
+_VALUES = {s.Assignment: "an assignment", s.Comma: "','", s.Conditional: "'?:'"}
+"""Expressions that are never places → their names in messages."""
 
 
 class ExpressionChecker:
@@ -109,10 +111,10 @@ class ExpressionChecker:
         while isinstance(part, s.IndexOf | s.MemberOf):
             self.places.add(id(part))
             part = part.value
-        if isinstance(part, s.Assignment):
-            raise self.context.fail(
-                part.span, "the value of an assignment cannot be assigned to", "write two statements"
-            )
+        for kind, words in _VALUES.items():
+            if isinstance(part, kind):
+                message = f"the value of {words} cannot be assigned to"
+                raise self.context.fail(part.span, message, "write two statements")
         return self.check(expression)
 
     def operands(self, parts: Sequence[s.Expression], outs: Container[int] = ()) -> list[Typed]:

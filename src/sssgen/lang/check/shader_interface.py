@@ -90,11 +90,15 @@ class ShaderInterface:
             context.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
 
     def check_passed(self, declaration: s.Declaration, storage: str, element: Type) -> None:
-        """Reports what GLSL ES does not pass to or between stages."""
+        """Reports what GLSL does not pass to or between stages; the rest are rules of GLSL ES."""
         context, keywords = self.context, declaration.qualifiers.keywords
-        if not context.es or storage not in ("in", "out"):
+        if storage not in ("in", "out"):
             return
         span, kind = declaration.qualifiers.span, kind_of(element)
+        if kind == "bool" and not isinstance(element, Struct):
+            raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
+        if not context.es:
+            return
         is_passed = storage == ("out" if self.vertex else "in")
         if context.es < 310 and is_passed and any(item == "location" for item, _ in declaration.qualifiers.layout):
             message = "what stages pass on has no location before GLSL ES 3.10"
@@ -105,8 +109,6 @@ class ShaderInterface:
             raise context.fail(span, "a fragment shader has no attributes", "pass it on by a varying")
         if "invariant" in keywords and storage == "in" and context.es >= 300:
             raise context.fail(span, "an input cannot be invariant", "write it before the output of the other stage")
-        if kind == "bool" and not isinstance(element, Struct):
-            raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
         if "varying" in keywords and kind != "float":
             raise context.fail(span, f"a varying is a float, a vector or a matrix, but this is {a_type(element)}")
         if storage == "out" and not self.vertex:
