@@ -24,7 +24,6 @@ from sssgen.passes.prune import prune
 from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.atomic_places import check_atomics
 from sssgen.passes.stage.host_uniforms import group_count_to_uniform, lengths_to_uniforms
-from sssgen.passes.stage.images import check_images
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
 from sssgen.passes.stage.interface_arrays import interface_arrays
 from sssgen.passes.stage.stage_interface import (
@@ -34,6 +33,7 @@ from sssgen.passes.stage.stage_interface import (
     interface,
     remarks,
 )
+from sssgen.passes.stage.storage_images import check_images
 from sssgen.passes.stage.storage_layout import check_buffers, read_buffers, with_read_access
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
