@@ -60,6 +60,9 @@ _INSTEAD = {
 _LATER_OPERATORS = frozenset({"%", "~", "<<", ">>", "&", "|", "^", "%=", "<<=", ">>=", "&=", "|=", "^="})
 """What GLSL ES 1.00 reserves."""
 
+_LATER_TYPES = frozenset(["uint", "uvec2", "uvec3", "uvec4", *(f"mat{a}x{b}" for a in "234" for b in "234" if a != b)])
+"""What GLSL ES 1.00 does not have."""
+
 _ORDER = {
     "invariant": 0, "flat": 1, "smooth": 1, "const": 2, "centroid": 2, "uniform": 3, "attribute": 3, "varying": 3,
     "in": 3, "out": 3, "inout": 3, "lowp": 4, "mediump": 4, "highp": 4,
@@ -89,7 +92,9 @@ def check_version(tokens: Sequence[Token], version: int, profile: str, reporter:
         if version == 100:
             for token in tokens:
                 if token.text in _LATER_OPERATORS:
-                    reporter.error(token.span, f"{shown} has no operator '{token.text}'", "write #version 300 es")
+                    reporter.error(token.span, f"{shown} has no operator '{token.text}'", _NEWER)
+                elif token.text in _LATER_TYPES:
+                    reporter.error(token.span, f"{shown} has no type '{token.text}'", _NEWER)
         if version < 310:
             for token in _misplaced(tokens):
                 reporter.error(

@@ -97,6 +97,13 @@ class ShaderInterface:
         span, kind = declaration.qualifiers.span, kind_of(element)
         if kind == "bool" and not isinstance(element, Struct):
             raise context.fail(span, "stages pass no bools", "pass a float of 0 or 1")
+        if not context.es and not context.language.desktop:
+            return
+        if storage == "out" and not self.vertex and isinstance(element, Matrix):
+            raise context.fail(span, "a colour cannot be a matrix", "declare an output for each column")
+        is_input = "in" in keywords and not self.vertex
+        if is_input and kind in ("int", "uint") and "flat" not in keywords:
+            raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
         if not context.es:
             return
         is_passed = storage == ("out" if self.vertex else "in")
@@ -111,14 +118,9 @@ class ShaderInterface:
             raise context.fail(span, "an input cannot be invariant", "write it before the output of the other stage")
         if "varying" in keywords and kind != "float":
             raise context.fail(span, f"a varying is a float, a vector or a matrix, but this is {a_type(element)}")
-        if storage == "out" and not self.vertex:
-            if isinstance(element, Matrix):
-                raise context.fail(span, "a colour cannot be a matrix", "declare an output for each column")
-            if word := next((word for word in keywords if word in ("flat", "smooth", "centroid")), ""):
-                raise context.fail(span, f"'{word}' belongs to what stages pass on, not to a colour")
-        is_fragment_input = storage == "in" and not self.vertex
-        if is_fragment_input and kind in ("int", "uint") and "flat" not in keywords:
-            raise context.fail(span, "an integer input of a fragment shader must be flat", "write flat in …")
+        word = next((word for word in keywords if word in ("flat", "smooth", "centroid")), "")
+        if word and storage == "out" and not self.vertex:
+            raise context.fail(span, f"'{word}' belongs to what stages pass on, not to a colour")
 
     def check_struct(self, type_: Type, storage: str, span: ir.Span, in_block: bool) -> None:
         """Reports a struct that a stage cannot have as an input or output."""
