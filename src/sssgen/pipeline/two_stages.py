@@ -69,9 +69,10 @@ def transpile_stages(
         able = [name for name in registry.names() if "vertex" in registry.load(name).files]
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
     for source in sources.values():
-        if buffer := next((each for each in source.module.variables if each.storage == "buffer"), None):
+        if memory := next((each for each in source.module.variables if each.storage in ("buffer", "image")), None):
+            what = "a storage buffer" if memory.storage == "buffer" else "an image"
             raise failure(
-                f"'{buffer.name}' is a storage buffer: stages that have these are translated one by one",
+                f"'{memory.name}' is {what}: stages that have these are translated one by one",
                 "sssgen transpile FILE --with OTHER",
                 source.module.functions[-1].span.file,
             )
