@@ -50,8 +50,6 @@ class CallChecker:
         if isinstance(callee, s.TypeName):
             return self.constructors.type_constructor(callee, call)
         name = callee.text
-        if context.plain and context.function.scopes.find(name) is not None:
-            raise context.fail(callee.span, f"'{name}' is a variable here, which hides the function")
         struct = context.find_struct(name)
         if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
             return self.constructors.construct_parts(struct, call)
