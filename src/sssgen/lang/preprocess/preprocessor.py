@@ -426,8 +426,6 @@ class _Run:
             return
         if keep and self.version and macro.name.startswith("GL_"):
             self.error(tokens[0].span, f"'{macro.name}' is reserved in GLSL: choose a name without GL_")
-        if macro.name == "defined":
-            self.error(tokens[0].span, "'defined' is the operator of #if and cannot be a macro: choose another name")
         if keep and self.is_es and macro.pastes:
             self.error(place, "GLSL ES has no '##'")
         if keep and self.version and macro.name in self.text_macros:
