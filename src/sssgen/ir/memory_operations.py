@@ -47,6 +47,16 @@ class MemoryRow(NamedTuple):
         """Whether it works on a number in shared memory or in a storage buffer."""
         return self.values > 0 and not self.image
 
+    @property
+    def loads_texel(self) -> bool:
+        """Whether its result is a texel of an image."""
+        return self.image and self.returns and self.values > 0
+
+    @property
+    def is_image_atomic(self) -> bool:
+        """Whether it both loads and stores a texel."""
+        return self.loads_texel and not self.reads_only
+
 
 def _atomic(
     name: str, doc: str, hlsl: str, metal_name: str, values: int = 1, needs_result: bool = False, **other: str

@@ -9,7 +9,7 @@ class Capabilities(NamedTuple):
     """The capabilities of one language: `[capabilities]` of its descriptor. What is not declared is False."""
 
     any_images: bool = False
-    """An image may have any format, or none if it is only written, may be read and written."""
+    """An image may have any format, or none if it is only written; it may be read and written."""
     array_attributes: bool = False
     """An attribute of a vertex shader may be an array."""
     array_constructors: bool = False

@@ -58,7 +58,7 @@ def image_arguments(expressions: ExpressionChecker, row: MemoryRow, call: s.Call
     size: Type = vector_of("int", 3 if image.dim == "3D" or image.array else 2)
     if not row.values:
         return (first,), size
-    atomic = row.returns and not row.reads_only
+    atomic = row.is_image_atomic
     texel: Type = vector_of(image.kind, 1 if atomic else 4)
     if atomic and (texel not in (INT, UINT) or variable.layout not in ("r32i", "r32ui")):
         raise context.fail(call.args[0].span, f"{row.name} needs an image of the format r32i or r32ui")
@@ -77,5 +77,5 @@ def check_access(expressions: ExpressionChecker, row: MemoryRow, variable: ir.Va
     span = call.args[0].span
     if variable.access == "readonly" and not row.reads_only:
         raise expressions.context.fail(span, f"'{variable.name}' is readonly", "leave readonly out")
-    if variable.access == "writeonly" and row.returns and row.values:
+    if variable.access == "writeonly" and row.loads_texel:
         raise expressions.context.fail(span, f"'{variable.name}' is writeonly", "leave writeonly out")

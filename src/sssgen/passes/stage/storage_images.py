@@ -30,7 +30,7 @@ def used_access(module: Module) -> dict[str, str]:
             if not isinstance(stmt, MemoryOperation) or not isinstance(place, Global | Local):
                 continue
             name = passed.get(place.name, place.name)
-            loaded |= {name} if stmt.name not in ("imageStore", "imageSize") else set()
+            loaded |= {name} if MEMORY[stmt.name].loads_texel else set()
             stored |= {name} if not MEMORY[stmt.name].reads_only else set()
     names = [variable.name for variable in module.variables if variable.storage == "image"]
     return {name: ("" if name in stored else "readonly") if name in loaded else "writeonly" for name in names}
@@ -79,6 +79,6 @@ def _check_image(variable: Variable, access: str, form: str, capabilities: Capab
 def _check_atomics(module: Module) -> None:
     for function in module.functions:
         for stmt in statements(function.body or ()):
-            if isinstance(stmt, MemoryOperation) and stmt.name.startswith("imageAtomic"):
+            if isinstance(stmt, MemoryOperation) and MEMORY[stmt.name].is_image_atomic:
                 hint = "work on a storage buffer of uint"
                 raise Unsupported(f"this target has no {stmt.name}", stmt.span, hint=hint)
