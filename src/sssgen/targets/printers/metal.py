@@ -14,6 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.types import Array, Image, Sampler, Struct, Type, Vector, unnested
 from sssgen.passes.stage.storage_layout import offsets
 from sssgen.targets.descriptor import Target
@@ -123,7 +124,8 @@ class MetalPrinter(AtomicPrinter):
         text = super().memory(stmt)
         image = stmt.args[0] if stmt.args else None
         name = image.name if isinstance(image, ir.Global | ir.Local) else ""
-        loaded = stmt.name == "imageStore" and any(each.name == name and not each.access for each in self.images)
+        stores = not MEMORY[stmt.name].reads_only
+        loaded = stores and any(each.name == name and not each.access for each in self.images)
         return f"{text}\n{name}.fence();" if loaded else text
 
     def image_binding(self, image: ir.Variable) -> int:
