@@ -98,6 +98,10 @@ CASES = {
         "float f(float x) { bool b = x > 0.0; for (int i = 0; b == b && i != 2; i++) x *= 8.0; if (b == b) x++;"
         "return x; }", 65.0,
     ),
+    "a loop that never runs": (
+        "float f(float x) { int c = 2; while (false) { x += 8.0; c--; if (!(c > int(x))) break; }"
+        "for (; false;) { x += 16.0; if (x > 3.0) break; } return x; }", 1.0,
+    ),
 }  # fmt: skip
 
 

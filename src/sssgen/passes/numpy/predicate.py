@@ -312,7 +312,8 @@ class _Converter:
         elif init is not None:
             self.statement(init)
         everyone: ir.Expr = ir.Literal(BOOL, True, span)
-        test = loop.condition if masked and not isinstance(loop.condition, ir.Literal) else None
+        always = isinstance(loop.condition, ir.Literal) and loop.condition.value
+        test = loop.condition if masked and not always else None
         start = everyone if outer.mask is None else outer.mask.expr(span)
         running = ""
         if masked or jumps - {"continue"}:
