@@ -18,6 +18,7 @@ import pytest
 
 from folders import DOCS
 from processes import HANG, enable_interrupts, wait_until_busy
+from slow_cases import diagonal, some_slow
 from sssgen.analyse.stress import boundaries, energy, jumps
 from sssgen.analyse.stress import dangerous_inputs as dangerous
 from sssgen.analyse.stress.contract_inputs import contract, sample_inputs
@@ -83,8 +84,7 @@ def faults_in(specimen: Specimen, result: Machines, settings: Settings) -> list[
 # The table
 
 
-@pytest.mark.parametrize("name", QUICK)
-@pytest.mark.parametrize("row", ROWS)
+@pytest.mark.parametrize(("row", "name"), diagonal(ROWS, QUICK))
 def test_dangerous_row(row: str, name: str, machines: Callable[[str], Machines]) -> None:
     """No technique of the library fails on the row."""
     result = machines(name)
@@ -140,7 +140,7 @@ def test_dangerous_row_lamp_at_surface_in_the_shell(backend: Callable[[str], Bac
 # Planted faults
 
 
-@pytest.mark.parametrize("name", ["numpy-f32", "gl", "webgpu", "browser", "hlsl"])
+@pytest.mark.parametrize("name", some_slow(["numpy-f32", "gl", "webgpu", "browser", "hlsl"], "numpy-f32", "webgpu"))
 def test_a_planted_nan_is_caught_and_shrunk(
     name: str, planted: Callable[..., str], machines: Callable[[str], Machines]
 ) -> None:
@@ -391,6 +391,7 @@ def test_a_missing_back_end_is_reported() -> None:
         assert process.returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_an_interrupted_run_leaves_no_report(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "sssgen", "stress", "beer_lambert", "--samples", "900000000", "-b", "numpy-f32"]

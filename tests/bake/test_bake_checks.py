@@ -397,6 +397,7 @@ def test_an_inverted_mesh_is_the_same_body(folder: Path, capsys: pytest.CaptureF
     assert (Path("turned.npy").read_bytes()) == Path("right.npy").read_bytes()
 
 
+@pytest.mark.slow
 def test_parts_inside_each_other_have_no_light_inside(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     outer, inner = meshes.box((1.0, 0.6, 0.4)), meshes.box((0.5, 0.3, 0.2))
     faces = np.concatenate([outer.faces, inner.faces + len(outer.vertices)])

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from slow_cases import some_slow
 from sssgen.cli.bake import KINDS
 from sssgen.cli.commands import command_parser
 from sssgen.cli.main import main
@@ -95,7 +96,7 @@ def test_the_reflection_names_the_pictures_of_the_material(folder: Path) -> None
     assert texture["needed"] == "load oak.png, which the material names"
 
 
-@pytest.mark.parametrize("kind", MATERIALS)
+@pytest.mark.parametrize("kind", some_slow(MATERIALS, "transmittance", "sdf", "view"))
 def test_the_command_of_the_message_makes_the_picture(
     kind: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -223,6 +224,7 @@ def test_a_faulty_attribute_is_an_error() -> None:
         read_attributes(sections("A map.\nbake: thickness box.obj"), "")
 
 
+@pytest.mark.slow
 def test_the_advice_for_an_installed_example_works(
     in_folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

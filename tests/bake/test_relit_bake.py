@@ -65,6 +65,7 @@ def picture(lights: str) -> np.ndarray:
     return drawn
 
 
+@pytest.mark.slow
 def test_one_seed_gives_one_file_and_its_json_explains_it() -> None:
     write(FIRST)
     assert bake() == 0

@@ -12,6 +12,7 @@ import pytest
 import bake_meshes as meshes
 from bake_meshes import SPOT, SUZANNE, Array, MeshData, joined, needs_meshes, write
 from oracle import technique
+from slow_cases import diagonal
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
@@ -262,6 +263,7 @@ def leak(path: Path, resolution: int, rays: int) -> tuple[float, float]:
     return float(result[outside].mean()), float(1.0 - result[within].mean())
 
 
+@pytest.mark.slow
 @needs_meshes
 def test_suzanne_does_not_leak() -> None:
     outside, within = leak(SUZANNE, 18, 7)
@@ -446,8 +448,13 @@ def marched(result: Volume, points: Array, ways: Array, method: str = "march_lig
 
 
 @needs_meshes
-@pytest.mark.parametrize("path", [SPOT, SUZANNE], ids=["spot", "suzanne"])
-@pytest.mark.parametrize(("method", "steps"), [("march_light", 400), ("march_light_traced", 64)])
+@pytest.mark.parametrize(
+    ("path", "method", "steps"),
+    diagonal(
+        [pytest.param(SPOT, id="spot"), pytest.param(SUZANNE, id="suzanne")],
+        [pytest.param("march_light", 400), pytest.param("march_light_traced", 64)],
+    ),
+)
 def test_the_marched_thickness_is_right_to_a_voxel(path: Path, method: str, steps: int) -> None:
     mesh = Mesh(path=str(path))
     points, ways = on_the_surface(mesh, 2000)

@@ -11,6 +11,7 @@ import pytest
 import bake_meshes as meshes
 from bake_meshes import SPOT, SUZANNE, Array, MeshData, by_quadrature, needs_meshes, to_exit, write
 from oracle import technique
+from slow_cases import diagonal, some_slow
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
@@ -92,7 +93,7 @@ def test_a_ball_is_four_thirds_of_its_radius(globe: str) -> None:
     assert samples.lost.max() <= 0.01
 
 
-@pytest.mark.parametrize("depth", [0.3, 1.0, 20.0])
+@pytest.mark.parametrize("depth", some_slow([0.3, 1.0, 20.0], 1.0))
 def test_a_ball_has_its_analytic_transmittance(globe: str, depth: float) -> None:
     """With chords 2 R cos, weighted by the cosine: 2 (1 - (1 + a) exp(-a)) / a², a = 2 R / depth."""
     a = 2.0 * 0.8 / depth
@@ -140,8 +141,9 @@ def test_the_facts_of_a_map_by_rays(globe: str) -> None:
 # A box, and a wide plate
 
 
-@pytest.mark.parametrize("size", [(1.0, 1.4, 0.6), (2.0, 0.05, 2.0)])
-@pytest.mark.parametrize("depth", [0.0, 0.4])
+@pytest.mark.parametrize(
+    ("depth", "size"), diagonal([0.0, 0.4], [pytest.param((1.0, 1.4, 0.6)), pytest.param((2.0, 0.05, 2.0))])
+)
 def test_a_box_has_its_integral(size: Any, depth: float) -> None:
     path = write(Path("box.obj"), meshes.box(size))
     texels = shown(path, (48, 32))
@@ -406,6 +408,7 @@ def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
         assert volume == pytest.approx([1.0, 1.0, 0.0], abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.MonkeyPatch, globe: str) -> None:
     requests: list[int] = []
 

@@ -93,6 +93,7 @@ def test_a_balls_map_has_its_lengths(globe: str) -> None:
     assert 0.0 < content["error"]["rounding"] < 0.01 and content["lost_rays"] < 0.01
 
 
+@pytest.mark.slow
 def test_the_same_inputs_give_the_same_bytes(globe: str) -> None:
     base = ["view_thickness", globe, "--mean-free-path", "0.3", "--size", "48x24", "--rays", "32"]
     bake(*base, "-o", "one.png", "--processes", "1")
@@ -115,6 +116,7 @@ def test_a_scene_gives_the_medium_and_the_mesh(globe: str) -> None:
     assert facts("a_1.png")["body"] == facts("b_1.png")["body"] and facts("a_1.png")["body"]["name"] == "globe.obj"
 
 
+@pytest.mark.slow
 def test_new_texture_coordinates_come_with_a_mesh(folder: Path) -> None:
     bare = meshes.box((1.0, 0.6, 0.4))._replace(uv=None)
     write(Path("bare.obj"), bare)

@@ -13,6 +13,7 @@ from amounts import examples
 from front_ends import FRONT_ENDS, accepts, survives
 from hostile import HOSTILE
 from mutations import mutated
+from slow_cases import some_slow
 from sssgen.support import paths as data
 
 TEXTS = [name for name, front_end in FRONT_ENDS.items() if front_end.is_text]
@@ -46,7 +47,7 @@ def test_the_seeds_are_right(name: str, folder: Path) -> None:
     assert sum(good) > 0.8 * len(good)
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", some_slow(TEXTS, "source", "material", "plain glsl"))
 def test_hostile_texts(name: str, folder: Path) -> None:
     """Each by itself: too deep, too long, too large, no text at all."""
     for title, content in HOSTILE.items():

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from amounts import COUNTED, examples
 from integer_expressions import HIGHEST, LOWEST, MOST, PARAMETERS, Expressions, Part, program, result_of
-from slow_cases import back_end_cases
+from slow_cases import back_end_cases, diagonal
 from sssgen.ir.types import INT, UINT, Scalar
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -77,8 +77,7 @@ SIGNED = ("abs", "sign")
 COUNTS = ("bitCount", "findLSB", "findMSB")
 
 
-@pytest.mark.parametrize("name", back_end_cases(SINGLE, "unity"))
-@pytest.mark.parametrize("kind", ["int", "uint"])
+@pytest.mark.parametrize(("name", "kind"), diagonal(back_end_cases(SINGLE, "unity"), ["int", "uint"]))
 def test_builtins_at_their_boundaries(backend: Callable[[str], Backend], name: str, kind: str) -> None:
     """Scalars and vectors, with arguments that no compiler knows: all fields, all numbers at a boundary."""
     machine = backend(name)

@@ -18,6 +18,7 @@ from known_answers import SWITCHES
 from metamorphic_bases import Base, base_from, mutated_case, rewritten_case, same_case
 from metamorphic_batches import Job, Worker
 from metamorphic_cases import KnownCase, MetamorphicRunner, known_case
+from slow_cases import some_slow
 from sssgen.ir.text import print_module
 from sssgen.run.backends import Backend
 
@@ -76,7 +77,7 @@ def failures(runner: MetamorphicRunner, cases: list[KnownCase]) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", some_slow(TARGETS, "numpy", "hlsl"))
 def test_known_answers(backend: Callable[[str], Backend], runners: dict[str, MetamorphicRunner], target: str) -> None:
     backend(target)
     messages = failures(runners[target], [known_case(Random(f"few {number}"), number) for number in range(FEW)])
@@ -151,6 +152,7 @@ def test_a_run_ends_with_the_programs_not_with_the_batches(tmp_path: Path, capsy
     assert sum(counts) >= 96 and sum(counts[:-1]) < 96
 
 
+@pytest.mark.slow
 def test_a_batch_that_takes_too_long_is_reported_and_the_next_one_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

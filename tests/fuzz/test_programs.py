@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from agreement import Oracle, compiles, subject_of
 from amounts import COUNTED, examples
 from shader_programs import source
+from slow_cases import some_slow
 from sssgen.run.backends import Backend
 from sssgen.run.compilers import Source
 from watchdog import bounded
@@ -30,7 +31,7 @@ def test_programs_compile(assert_compiles: Callable[[Source], None], seed: int) 
     COUNTED["programs compiled"] += BATCH
 
 
-@pytest.mark.parametrize("name", ["gl", "webgpu", "hlsl", "tsl"])
+@pytest.mark.parametrize("name", some_slow(["gl", "webgpu", "hlsl", "tsl"], "gl", "webgpu", "hlsl"))
 @examples(6, 0.1, shrink=False)
 @given(seed=SEEDS)
 def test_programs_agree(backend: Callable[[str], Backend], name: str, seed: int) -> None:

@@ -14,6 +14,7 @@ from glsl_reduction import reduced, size
 from glsl_tree import Function, Node, Parameter, Program, source
 from hlsl_in_vulkan import HLSLInVulkan
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.run.backends import Backend
 from sssgen.support import diagnostics
 
@@ -43,7 +44,7 @@ def failures(runner: Runner, seed: int, batches: int) -> list[str]:
     return messages
 
 
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", some_slow(TARGETS, "numpy", "webgpu"))
 def test_random_programs(backend: Callable[[str], Backend], runners: dict[str, Runner], target: str) -> None:
     backend(target)  # skips where it is missing
     messages = failures(runners[target], 20, FEW)

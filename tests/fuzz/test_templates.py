@@ -103,6 +103,7 @@ def test_the_sandbox_renders_usual_templates(tmp_path: Path) -> None:
     assert lines[2] == "// True bc True True"
 
 
+@pytest.mark.slow
 def test_the_sandbox_changes_no_text(tmp_path: Path) -> None:
     for target in sssgen.all_targets():
         for material in ("ice", "resin_inlay"):

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from amounts import examples
 from front_ends import FRONT_ENDS, survives
+from slow_cases import some_slow
 
 VALUES = [
     "true", "-1", "0", "1e308", "-1e308", "1e-300", "nan", "inf", "-inf", "9223372036854775808", '""', '"\\u0000"',
@@ -81,7 +82,7 @@ def texts(seed: bytes, offset: int) -> Iterator[str]:
         yield "\n".join(f"{key} = {written(value)}" for key, value in changed.items())
 
 
-@pytest.mark.parametrize("name", ["material", "scene", "ci folder"])
+@pytest.mark.parametrize("name", some_slow(["material", "scene", "ci folder"], "material"))
 @examples(1, 0.01)
 @given(offset=st.integers(0, len(VALUES) - 1))
 def test_any_value_at_every_place(name: str, tmp_path: Path, offset: int) -> None:
@@ -91,7 +92,7 @@ def test_any_value_at_every_place(name: str, tmp_path: Path, offset: int) -> Non
             survives(front_end, text.encode(), tmp_path)
 
 
-@pytest.mark.parametrize("name", ["material", "scene", "ci folder"])
+@pytest.mark.parametrize("name", some_slow(["material", "scene", "ci folder"], "material"))
 def test_values_for_the_sections(name: str, tmp_path: Path) -> None:
     """Every section of a material and a scene with every value."""
     sections = (

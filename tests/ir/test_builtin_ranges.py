@@ -13,6 +13,7 @@ import pytest
 
 from pass_cases import module_of
 from qualification.parity_inputs import DTYPES, EDGES, evaluated, inside, widened
+from slow_cases import diagonal
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures, vector_ranges
 from sssgen.ir.component_ranges import within
@@ -325,8 +326,7 @@ def assert_safe(case: Guarded, actual: Array) -> int:
     return int(good.sum())
 
 
-@pytest.mark.parametrize("mode", ["auto", "all"])
-@pytest.mark.parametrize("name", ["numpy-f32", "gl", "webgpu", "hlsl"])
+@pytest.mark.parametrize(("name", "mode"), diagonal(["numpy-f32", "gl", "webgpu", "hlsl"], ["auto", "all"]))
 def test_guarded_builtins_are_finite_and_exact_in_the_domain(
     name: str, mode: str, backend: Callable[[str], Backend]
 ) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from qualification.parity_inputs import DTYPES, textures
+from slow_cases import diagonal
 from sssgen.ir.out_builtins import OUT_BUILTINS, is_out_builtin, out_builtin
 from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spell, vector_of
 from sssgen.lang.loader import load_text
@@ -93,8 +94,7 @@ def expected(name: str, args: tuple[Array, ...]) -> tuple[Array, Array]:
     return (exact // 2**32).astype(np.int64), (exact % 2**32).astype(np.int64)
 
 
-@pytest.mark.parametrize("name", BACKENDS)
-@pytest.mark.parametrize("builtin", KINDS)
+@pytest.mark.parametrize(("builtin", "name"), diagonal(KINDS, BACKENDS))
 def test_both_results_on_every_back_end(builtin: str, name: str, backend: Callable[[str], Backend]) -> None:
     for size in (1, 3):
         text, results = program(builtin, size)

@@ -18,6 +18,7 @@ import pytest
 from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
 from processes import HANG, enable_interrupts, wait_until
+from slow_cases import some_slow
 from sssgen.analyse.stress.stress_items import run_stress
 from sssgen.analyse.stress.stress_report import Report, as_json
 from sssgen.analyse.stress.stress_run import Machines, Settings, stress
@@ -255,6 +256,7 @@ def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> Non
     assert len([path for path in (tmp_path / "store").rglob("*") if path.is_file()]) == 12
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_an_item_that_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any) -> None:
     deadly = Item("executor_items:die", (str(tmp_path), 7), "the seventh")
@@ -265,7 +267,7 @@ def test_an_item_that_kills_every_dask_worker_is_named(tmp_path: Path, dask: Any
 
 
 @pytest.mark.filterwarnings("default")
-@pytest.mark.parametrize("runner", ["processes", "dask"])
+@pytest.mark.parametrize("runner", some_slow(["processes", "dask"], "processes"))
 def test_distributed_stress_gives_the_same_results(
     runner: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -151,6 +151,7 @@ def test_measurements_are_cached(
     assert ran
 
 
+@pytest.mark.slow
 def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     ran = record_titles(monkeypatch)
     points = chart.chart_record([cube()], settings(roles=("thickness",)))["points"]
@@ -381,6 +382,7 @@ def test_gpu_times_as_costs() -> None:
     assert (result["cost"], result["cost_unit"]) == ("gpu", "ms at 1080p")
 
 
+@pytest.mark.slow
 def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend]) -> None:
     backend("gl")
     text = '[inlay]\ndepth = 0.1\n[geometry]\nkind = "box"\n[camera]\nposition = [0.5, 1.0, 3.0]\n'
@@ -413,6 +415,7 @@ def test_the_chart_command_writes_and_lists_its_files(tmp_path: Path, capsys: py
     assert all(f"{name}" in capsys.readouterr().out for name in ["inlay_plate, coordinates"])
 
 
+@pytest.mark.slow
 def test_a_chart_of_bytes_or_of_a_device(capsys: pytest.CaptureFixture[str]) -> None:
     expected = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "--json"]
     assert main([*expected, "--cost", "bytes", "--max-bytes", "0"]) == 0

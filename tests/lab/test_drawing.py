@@ -21,6 +21,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processes import HANG
+from slow_cases import some_slow
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
 from sssgen.lab.chart.drawing.panels import COLORS, Chart, charts_of, label_texts, medians, number, styles
@@ -216,7 +217,7 @@ def drawn(name: str) -> list[tuple[Chart, Any]]:
         return [(chart, figure.figure_of(chart)) for chart in CHARTS[name]()]
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@pytest.mark.parametrize("name", some_slow(CHARTS, "two roles"))
 def test_texts_do_not_overlap(name: str) -> None:
     """No text of a chart covers another text or a marker, or crosses the edge of the picture; few are omitted."""
     for chart, picture in drawn(name):
@@ -390,6 +391,7 @@ def test_a_long_device_and_unit_are_shown() -> None:
     assert "a software driver" in chart.note
 
 
+@pytest.mark.slow
 def test_charts_say_the_boundary_and_the_lights() -> None:
     result = record()
     assert "boundary" not in charts_of(check_record(result))[0].note

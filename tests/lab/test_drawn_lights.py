@@ -55,6 +55,7 @@ def test_each_light_is_measured_alone(ior: float) -> None:
         assert value == pytest.approx(measure([(candidate_of(EMPTY), fit_of(EMPTY))], case)[0][0], rel=0.15)
 
 
+@pytest.mark.slow
 def test_lamps_are_at_one_radius_from_the_surface() -> None:
     scene = small_capsule()
     views = drawn_lights.lamp_views([scene], 3, Settings(samples=8, processes=0))[scene.key]
@@ -65,6 +66,7 @@ def test_lamps_are_at_one_radius_from_the_surface() -> None:
         close(geometry.distance(place[None, :3]), geometry.radius + 0.5 * geometry.length, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_several_lights_have_one_volume_whose_light_is_their_sum() -> None:
     scene, settings = small_capsule(), Settings(samples=64, processes=0)
     views = drawn_lights.drawn_views([scene], 3, settings)[scene.key]

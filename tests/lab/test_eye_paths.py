@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from qualification.closed_forms import henyey_greenstein
+from slow_cases import some_slow
 from sssgen.lab.reference import dielectric
 from sssgen.lab.reference.dielectric import Dielectric, axes, fresnel
 from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, Sky, readings
@@ -225,7 +226,7 @@ def unscattered(depth: float, ior: float) -> tuple[float, float]:
 SLABS = [(2.0, 0.9, 0.0, 1.5), (1.0, 0.95, 0.0, 1.3), (1.0, 0.9, 0.6, 1.4)]
 
 
-@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), SLABS)
+@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), some_slow(SLABS, SLABS[-1]))
 def test_slabs_under_a_sky_by_adding_and_doubling(depth: float, albedo: float, anisotropy: float, ior: float) -> None:
     # by reciprocity: a sky above shows R of a beam along the ray, an even sky R + T, both without the first reflection
     medium = grey(albedo, ior, 1.0, anisotropy)

@@ -163,13 +163,15 @@ CHAINS = {
     "no thickness": ("wrap_lighting",),
     "a distance texture": ("march_distance_texture", "beer_lambert", "lobe_henyey_greenstein"),
 }
+QUICK = ("a number takes it", "a march", "a map")
+MARKS = {title: [] if title in QUICK else [pytest.mark.slow] for title in CHAINS}
 
 
 def picked(scene: MeasuredScene, point: Mapping[str, Any]) -> Pick:
     return Pick(scene.name, point, None, (), None, None, True)
 
 
-@pytest.mark.parametrize("names", CHAINS.values(), ids=CHAINS)
+@pytest.mark.parametrize("names", [pytest.param(CHAINS[title], id=title, marks=MARKS[title]) for title in CHAINS])
 def test_the_emitted_material_gives_the_measured_light(
     names: tuple[str, ...], cube: View, training: tuple[View, ...], tmp_path: Path
 ) -> None:

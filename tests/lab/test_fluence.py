@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, rng, technique, unit, units
+from slow_cases import some_slow
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import traced_body
@@ -92,7 +93,7 @@ def test_light_from_everywhere_is_the_same_inside_where_nothing_is_absorbed(ior:
     assert light[traced.nearest[inner]].std() < 0.08
 
 
-@pytest.mark.parametrize(("albedo", "ior"), [(0.9, 1.0), (0.4, 1.0), (0.9, 1.4)])
+@pytest.mark.parametrize(("albedo", "ior"), some_slow([(0.9, 1.0), (0.4, 1.0), (0.9, 1.4)], (0.9, 1.4)))
 def test_flights_for_all_directions_give_what_photons_of_each_do(albedo: float, ior: float) -> None:
     """Two ways, in a body with a hole: the same total, and the same light in each third of the body."""
     scene = body(Torus(0.4, 0.15), 6.0, albedo, ior)

@@ -7,6 +7,7 @@ from math import isnan, sqrt
 import numpy as np
 import pytest
 
+from slow_cases import diagonal
 from sssgen.lab.measure.error_metric import EPSILON, compare, fit_target, flip
 
 
@@ -66,8 +67,10 @@ def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: f
     assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.5
 
 
-@pytest.mark.parametrize("factor", [0.8, 0.9, 1.05, 1.1, 1.3])
-@pytest.mark.parametrize(("tail", "bias"), [(0.6, 0.005), (0.2, 0.03)])
+@pytest.mark.parametrize(
+    ("factor", "tail", "bias"),
+    diagonal([0.8, 0.9, 1.05, 1.1, 1.3], [pytest.param(0.6, 0.005), pytest.param(0.2, 0.03)]),
+)
 def test_the_bars_of_few_samples_contain_the_truth(tail: float, bias: float, factor: float) -> None:
     """Means of 128 paths, of which few reach the light, with the noise that 8 batches of them have.
 

@@ -9,6 +9,7 @@ import pytest
 from pass_cases import key, module_of
 from range_programs import Checker as CheckedRun
 from range_programs import RangePrograms, Recorder, inputs, recorded
+from slow_cases import some_slow
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import Range
@@ -74,7 +75,7 @@ float caller(float a, float b, int n, inout float c, out float d, vec3 N, vec3 P
 """
 
 
-@pytest.mark.parametrize(("own", "widenings"), [(0, 8), (0, 1), (1, 8)])
+@pytest.mark.parametrize(("own", "widenings"), some_slow([(0, 8), (0, 1), (1, 8)], (0, 8)))
 def test_values_are_in_their_ranges_where_functions_have_summaries(
     own: int, widenings: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -12,7 +12,8 @@ import pytest
 
 import sssgen
 from carried import carrying
-from example_cases import marks
+from example_cases import example_cases
+from slow_cases import diagonal
 from sssgen.material.material_loading import examples
 from sssgen.run.check.compiler_inputs import sources
 from sssgen.run.compilers import Source
@@ -20,7 +21,7 @@ from sssgen.run.compilers import Source
 FORMS = ("shader", "functions")
 LACKING = {name: {"shadertoy"} for name in ("jade_ring", "marble_idol", "wax_mouse")}
 """The targets that cannot express an example: its textures are volumes, or a program draws them."""
-CASES = [pytest.param(name, form, marks=marks(name)) for name in examples() for form in FORMS]
+CASES = diagonal(example_cases(), FORMS)
 
 
 def emitted(name: str, form: str) -> dict[str, str]:

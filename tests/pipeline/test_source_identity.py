@@ -16,6 +16,7 @@ import sssgen
 from carried import carrying
 from example_cases import marks
 from folders import EXAMPLES
+from slow_cases import some_slow
 from sssgen.material.library import TECHNIQUES
 from sssgen.material.material_loading import examples
 from sssgen.support.diagnostics import SssgenError
@@ -55,7 +56,7 @@ def emitted_from_folders(tmp_path: Path, name: str, targets: str) -> list[dict[s
     return [emit(tmp_path / str(index), folder, [text], targets) for index, (folder, text) in enumerate(ways)]
 
 
-@pytest.mark.parametrize("name", ["candle", "jelly"])
+@pytest.mark.parametrize("name", some_slow(["candle", "jelly"], "jelly"))
 def test_the_folder_does_not_change_a_byte(tmp_path: Path, name: str) -> None:
     first, *others = emitted_from_folders(tmp_path, name, ",".join(TARGETS))
     assert len(first) > len(TARGETS)

@@ -148,7 +148,7 @@ def _edited(stage: TechniqueUse, number: int) -> TechniqueUse:
     return stage._replace(values=values)
 
 
-@pytest.mark.parametrize("name", some_slow(examples(), "ice", "jade_ring"))
+@pytest.mark.parametrize("name", some_slow(examples(), "jade_ring"))
 def test_a_variant_equals_a_compilation_from_source(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     original, variant = load_material(name), edited(load_material(name), 0)
     stored = {}

@@ -9,6 +9,7 @@ import pytest
 
 import sssgen
 from folders import ROOT
+from slow_cases import some_slow
 from sssgen.material.material_loading import parse_material
 from sssgen.material.requirements import requirements
 from sssgen.material.scatter_color import multiscatter_of_albedo
@@ -50,7 +51,7 @@ def test_a_preset_is_a_material_in_each_quality(name: str) -> None:
         assert (quality == "best" and row.scatters) == ("bake" in needs)
 
 
-@pytest.mark.parametrize("target", ENGINES)
+@pytest.mark.parametrize("target", some_slow(ENGINES, "threejs", "godot", "unity-urp"))
 def test_a_preset_compiles_for_every_engine(target: str) -> None:
     for name in ("wax", "gummy", "honey", "leaf"):
         for quality in QUALITIES:

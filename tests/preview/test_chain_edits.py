@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from slow_cases import diagonal
 from sssgen.cli.main import main
 from sssgen.material.material_loading import load_material
 from sssgen.presets.preset import presets
@@ -86,8 +87,7 @@ def test_a_technique_takes_the_place_of_another(talk: PageMessages, ring: Path) 
     assert not talk.messages()[0]["error"]
 
 
-@pytest.mark.parametrize("quality", ["fast", "good"])
-@pytest.mark.parametrize("name", ["wax", "leaf", "ice"])
+@pytest.mark.parametrize(("name", "quality"), diagonal(["wax", "leaf", "ice"], ["fast", "good"]))
 def test_a_preset_replaces_the_chain(talk: PageMessages, ring: Path, name: str, quality: str) -> None:
     edit(talk, "preset", preset=name, quality=quality, size_mm=30.0)
     assert not talk.messages()[0]["error"]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from slow_cases import some_slow
 from sssgen.material.material_loading import examples, load_material
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
@@ -49,7 +50,7 @@ def test_an_example_becomes_a_material_of_the_user_which_the_page_follows() -> N
     assert "surface_roughness = 0.4" in Path(scene.material).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["paper_lantern", "wax_mouse", "candle"])
+@pytest.mark.parametrize("name", some_slow(["paper_lantern", "wax_mouse", "candle"], "wax_mouse"))
 def test_the_files_of_an_example_come_with_it(name: str) -> None:
     talk = PageMessages(Pane(name))
     before = talk.messages()[0]["picture"]

@@ -66,6 +66,7 @@ def test_add_a_builtin(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     assert "`genF clampSigned(genF)`<br>clamp(x, -1, 1)." in read(tmp_path / "docs" / "intrinsics.md")
 
 
+@pytest.mark.slow
 def test_add_a_role(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     for name in ("gl", "glslang", "naga", "tint", "dxc", "unity"):
         compiler(name)
@@ -76,6 +77,7 @@ def test_add_a_role(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     assert "wetness(" in read(tmp_path / "out" / "wet" / "wet_paper.wgsl")
 
 
+@pytest.mark.slow
 def test_add_a_target(tmp_path: Path, compiler: Callable[[str], Any]) -> None:
     """In a fresh environment with sssgen and its dependencies, and no plug-in yet."""
     compiler("glslang")

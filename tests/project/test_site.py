@@ -52,6 +52,7 @@ def test_every_command_and_option_is_in_the_reference() -> None:
             assert option in text or option == "--help", f"{name} {option}"
 
 
+@pytest.mark.slow
 def test_every_preset_has_a_page_and_the_search_knows_its_name() -> None:
     pages = preset_pages.pages()
     assert list(pages) == [f"docs/reference/presets/{name}.md" for name in presets()]

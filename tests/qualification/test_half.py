@@ -206,6 +206,7 @@ def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
 # sssgen eval --precision f16
 
 
+@pytest.mark.slow
 def test_eval_in_half(capsys: pytest.CaptureFixture[str], backend: Get) -> None:
     backend("webgpu-f16")
     arguments = ["eval", "wrap_lighting", "--samples", "50", "--precision", "f16", "--json", "--backend"]

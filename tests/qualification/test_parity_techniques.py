@@ -12,6 +12,7 @@ import pytest
 
 from folders import DOCS
 from qualification.parity_techniques import BACKENDS, BOUND_LANES, LANES, Case, cases, excess, measure
+from slow_cases import diagonal
 from sssgen.cli import main as cli
 from sssgen.material import library
 from sssgen.run import backends
@@ -29,8 +30,9 @@ Get = Callable[[str], Backend]
 
 
 # with g++ there is a compilation for each technique: make test-long
-@pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl", pytest.param("metal", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("technique", sorted(library.index()))
+@pytest.mark.parametrize(
+    ("technique", "name"), diagonal(sorted(library.index()), ["gl", "webgpu", "browser", "hlsl", "metal"])
+)
 def test_technique(backend: Get, technique: str, name: str) -> None:
     """Consecutive tests use the same technique, because `measure` caches the oracle of the latest techniques."""
     gpu, case = backend(name), Case(technique)

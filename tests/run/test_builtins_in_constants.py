@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from results_of_glsl import check_results
-from slow_cases import back_end_cases
+from slow_cases import back_end_cases, diagonal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.signatures import overloads
 from sssgen.ir.types import FLOAT, Matrix, Scalar, Type, components, kind_of, spell
@@ -81,8 +81,7 @@ def test_nearly_every_vector_is_a_case() -> None:
     assert len(CASES) > 2.5 * len(rows)
 
 
-@pytest.mark.parametrize("name", back_end_cases(BACKENDS))
-@pytest.mark.parametrize("qualifier", ["const ", ""])
+@pytest.mark.parametrize(("name", "qualifier"), diagonal(back_end_cases(BACKENDS), ["const ", ""]))
 def test_builtins_of_constants(backend: Callable[[str], Backend], name: str, qualifier: str) -> None:
     """In a constant, and in a variable at file scope."""
     gpu = backend(name)

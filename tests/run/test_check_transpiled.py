@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from slow_cases import diagonal, some_slow
 from sssgen.cli import main as cli
 from sssgen.run.check.shader_files import read
 from sssgen.run.compilers.calling_entry import functions
@@ -42,8 +43,16 @@ def checked(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, l
     return status, [(row["file"], row["stage"], row["ok"]) for row in json.loads(capsys.readouterr().out)["results"]]
 
 
-@pytest.mark.parametrize("target", LANGUAGES)
-@pytest.mark.parametrize(("name", "text", "stage"), [("a.frag", FRAGMENT, "fragment"), ("f.glsl", LIBRARY, "library")])
+@pytest.mark.parametrize(
+    ("target", "name", "text", "stage"),
+    diagonal(
+        LANGUAGES,
+        [
+            pytest.param("a.frag", FRAGMENT, "fragment", id="a.frag"),
+            pytest.param("f.glsl", LIBRARY, "library", id="f.glsl"),
+        ],
+    ),
+)
 def test_any_name_will_do(name: str, text: str, stage: str, target: str, capsys: pytest.CaptureFixture[str]) -> None:
     output = LANGUAGES[target]
     transpiled(name, text, target, output)
@@ -75,7 +84,7 @@ def test_a_wrapped_pointer_is_called(kind: str) -> None:
         assert [parameter[0] for parameter in function.parameters] == [f"ptr<function, {kind}>", "f32"]
 
 
-@pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
+@pytest.mark.parametrize("target", some_slow(["wgsl", "hlsl", "glsl-330"], "wgsl"))
 def test_two_stages_are_compared(target: str, capsys: pytest.CaptureFixture[str]) -> None:
     """The fragment shader reads the second output of three."""
     vertex = "#version 330\nout vec3 a, b, c; void main() { a = b = c = vec3(1.0); gl_Position = vec4(1.0); }"

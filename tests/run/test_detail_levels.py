@@ -69,7 +69,7 @@ def picture(folder: Path, material: str, parameters: str, backend: Backend) -> n
     return render(load(folder / "scene.toml"), backend).linear
 
 
-@pytest.mark.parametrize("name", back_end_cases([*DRAWING, *ENGINES], "threejs"))
+@pytest.mark.parametrize("name", back_end_cases([*DRAWING, *ENGINES]))
 def test_a_level_has_the_values_of_its_own_stages(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
     driver = backend(name)
     alone = [picture(tmp_path, material_text(level), "", driver) for level in range(LEVELS)]

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slow_cases import back_end_cases
 from sssgen.run.backends import Array, Backend
 from sssgen.run.render.scene_render import render
 from sssgen.scene.scene_loading import parse_scene
@@ -47,7 +48,7 @@ scattering_albedo = [SCATTERED, SCATTERED, SCATTERED]
 """
 
 
-@pytest.mark.parametrize("name", DRAWING)
+@pytest.mark.parametrize("name", back_end_cases(DRAWING, "unity-urp"))
 def test_the_share_scales_the_diffuse_reflection_alone(
     name: str, backend: Callable[[str], Backend], tmp_path: Path
 ) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from folders import EXAMPLES
+from slow_cases import some_slow
 from sssgen.cli.main import main
 from sssgen.run import backends
 from sssgen.run.backend_registry import BACKENDS
@@ -16,14 +17,10 @@ from sssgen.run.backends import Backend
 from sssgen.run.render.scene_render import render
 from sssgen.scene import scene_loading
 
-ENGINES = [
-    pytest.param(name, marks=[pytest.mark.slow] if record.apart or "-" in name else [])  # one renderer of each
-    for name, record in BACKENDS.items()
-    if record.scenes_only
-]
+ENGINES = [name for name, record in BACKENDS.items() if record.scenes_only]
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", some_slow(ENGINES, "babylonjs"))
 def test_an_engine_draws_a_scene(name: str, backend: Callable[[str], Backend]) -> None:
     """The light is the engine's own: not the oracle's numbers, but the same picture."""
     scene = scene_loading.load(str(EXAMPLES / "paper_lantern" / "scene.toml"))

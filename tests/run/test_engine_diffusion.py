@@ -12,7 +12,7 @@ import pytest
 
 import sssgen
 from diffusion_cases import MATERIAL, SCENE, WAY, wall
-from engine_cases import BLACK, ENGINES, PAGES, mesh_of, through
+from engine_cases import BLACK, ENGINES, mesh_of, pages, through
 from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 from skips import or_skip
 from sssgen.run.backends import Array
@@ -25,7 +25,7 @@ from torus_cases import inner_pixels, torus_mesh
 COLORS = ("color", "albedoColor", "diffuse")
 
 
-@pytest.fixture(scope="module", params=PAGES)
+@pytest.fixture(scope="module", params=pages(("babylonjs", "webgl")))
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     target, name = request.param
     renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target]), name)

@@ -14,11 +14,11 @@ import pytest
 import sssgen
 from engine_cases import BLACK, ENGINES, HEAD, PAGES, mesh_of, through
 from skips import or_skip
+from slow_cases import diagonal
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array, engine_page
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import BABYLON
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.run.render.scene_values import shell_of
@@ -35,6 +35,9 @@ def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target]), name)
     yield renderer
     renderer.page.close()
+
+
+SEVERAL_OR_ONE = diagonal(PAGES, [pytest.param(True, id="layers of each light"), pytest.param(False, id="depth map")])
 
 
 class Case(NamedTuple):
@@ -77,8 +80,7 @@ def differences(page: EnginePage, case: Case, **properties: Any) -> Array:
     return result
 
 
-@pytest.mark.parametrize("several", [False, True], ids=["one light", "several lights"])
-@pytest.mark.parametrize("page", PAGES, indirect=True)
+@pytest.mark.parametrize(("page", "several"), SEVERAL_OR_ONE, indirect=["page"])
 def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: Callable[[bool], Case]) -> None:
     """Without textures from the page, the light that comes through is that of the oracle."""
     # the oracle's depths are half floats, so that every back end has the same
@@ -96,8 +98,7 @@ def test_the_eyes_layers(page: EnginePage, tmp_path: Path) -> None:
     assert np.quantile(differences(page, Case(path, mesh, expected)), 0.95) < 1.0 / 255.0
 
 
-@pytest.mark.parametrize("several", [False, True], ids=["depth map", "layers of each light"])
-@pytest.mark.parametrize("page", PAGES, indirect=True)
+@pytest.mark.parametrize(("page", "several"), SEVERAL_OR_ONE, indirect=["page"])
 def test_a_rectangle_of_light_is_as_a_point(page: EnginePage, several: bool, tmp_path: Path) -> None:
     """A pass shows the body from the rectangle's centre: what comes through is that of a point light there.
 
@@ -131,13 +132,14 @@ ELSEWHERE = {"size": 2.0, "model": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 3, -5
 """A copy of the body."""
 
 
-@pytest.mark.parametrize("page", [("babylonjs", name) for name in BABYLON.renderers], ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", [page for page in PAGES if page.values[0][0] == "babylonjs"], indirect=True)
 @pytest.mark.parametrize("stage", [{"leftHanded": True}, {"copies": [ELSEWHERE]}], ids=["left-handed", "two bodies"])
 def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable[[bool], Case]) -> None:
     """A left-handed scene, which is Babylon's default; a second body of the material, with pictures of its own."""
     assert np.quantile(differences(page, case_of(False), stage=stage), 0.98) < 1.0 / 255.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", [("threejs", "webgl"), ("threejs", "webgl2")], ids="-".join, indirect=True)
 def test_two_renderers(page: EnginePage, case_of: Callable[[bool], Case]) -> None:
     """Another renderer has drawn the object before, with pictures of its own."""
@@ -145,8 +147,7 @@ def test_two_renderers(page: EnginePage, case_of: Callable[[bool], Case]) -> Non
     assert np.quantile(differences(page, case_of(True), stage={"first": first}), 0.98) < 1.0 / 255.0
 
 
-@pytest.mark.parametrize("size", [1.0, 0.5])
-@pytest.mark.parametrize("page", PAGES, indirect=True)
+@pytest.mark.parametrize(("page", "size"), diagonal(PAGES, [1.0, 0.5]), indirect=["page"])
 def test_values_of_the_object_come_from_its_matrix(page: EnginePage, size: float) -> None:
     """wax_mouse and another one of half its size have one material; the page sets no scale."""
     mesh, target = mesh_of("wax_mouse"), page.engine.target

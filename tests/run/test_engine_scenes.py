@@ -32,9 +32,7 @@ from sssgen.targets.runtime.numpy_textures import Texture
 from unity_frames import Lamp, Replay, compile_feature, full_floats, mirrored, run_feature, texture_numbers
 
 SLOW = partial(pytest.param, marks=pytest.mark.slow)
-QUICK = {
-    ("threejs", "webgpu", "jade_ring"), ("threejs", "webgl2", "jade_ring"), ("babylonjs", "webgl", "candle"),
-}  # fmt: skip
+QUICK = {("threejs", "webgl2", "jade_ring")}
 CELLS = [
     (pytest.param if (*renderer, name) in QUICK else SLOW)(renderer, name, id="-".join((*renderer, name)))
     for renderer in RENDERERS

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from slow_cases import some_slow
 from sssgen.cli.main import main
 from sssgen.run import backends, compilers
 from sssgen.run.backends import Backend, Text
@@ -67,10 +68,11 @@ def test_outputs_of_the_oracle(capsys: pytest.CaptureFixture[str], write_inputs:
     assert report["lanes"] == 2 and report["backend"] == "numpy"
 
 
-def test_all_back_ends_agree(capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
-    report = answer(capsys, "lobe_gdc2011", "-i", write_inputs(LOBE), "--backend", "all")
+@pytest.mark.parametrize("names", some_slow(["gl,webgpu,numpy-f32", "all"], "gl,webgpu,numpy-f32"))
+def test_back_ends_agree(names: str, capsys: pytest.CaptureFixture[str], write_inputs: Callable[..., str]) -> None:
+    report = answer(capsys, "lobe_gdc2011", "-i", write_inputs(LOBE), "--backend", names)
     rows = {row["name"]: row for row in report["backends"]}
-    assert list(rows) == list(backends.FUNCTIONS)
+    assert set(rows) == set(backends.FUNCTIONS if names == "all" else ["numpy", *names.split(",")])
     for name, row in rows.items():
         assert row.get("missing") or row["deviation"] <= (1e-3 if name.endswith("f16") else 1e-6), row
 

@@ -169,7 +169,7 @@ def test_the_light_goes_around() -> None:
     assert min(steps) > 0.002 and max(steps) < 4.0 * np.median(steps)
 
 
-@pytest.mark.parametrize("name", example_cases())
+@pytest.mark.parametrize("name", example_cases("ice"))
 def test_the_gallery_is_current(name: str, backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
     """A small picture of the scene equals the scaled picture of the gallery."""
     monkeypatch.syspath_prepend(ROOT / "docs")

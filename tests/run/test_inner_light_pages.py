@@ -14,7 +14,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sssgen
-from engine_cases import BLACK, ENGINES, PAGES
+from engine_cases import BLACK, ENGINES, pages
 from relit_cases import EXAMPLES, drawn_by_numpy, linear_sky, turned, write_body, write_example
 from skips import or_skip
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
@@ -45,7 +45,7 @@ def refracting(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module", params=PAGES)
+@pytest.fixture(scope="module", params=pages(("threejs", "webgpu")))
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     target, name = request.param
     renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target], seconds=400.0), name)

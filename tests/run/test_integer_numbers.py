@@ -108,7 +108,7 @@ SCOPES = [
 CASES = WRAPPED + TYPES + BOOLS + PLACES + SCOPES
 
 
-@pytest.mark.parametrize("name", back_end_cases(SINGLE, "metal"))
+@pytest.mark.parametrize("name", back_end_cases(SINGLE))
 def test_numbers(name: str, backend: Callable[[str], Backend]) -> None:
     """All cases of a back end in one test, which costs a start of the driver."""
     machine = backend(name)

@@ -119,8 +119,9 @@ OF_THREE: Mapping[str, Mapping[str, float]] = {
 """Stages → the properties of three's own material that do the same."""
 
 
+@pytest.mark.parametrize("renderer", some_slow(THREE.renderers, "webgl", "webgpu"))
 @pytest.mark.parametrize("stages", some_slow(OF_THREE, SHEEN), ids=["coat", "sheen"])
-def test_three_draws_them_as_its_own_material(stages: str, tmp_path: Path) -> None:
+def test_three_draws_them_as_its_own_material(stages: str, renderer: str, tmp_path: Path) -> None:
     """The same picture as without the stages, with three's properties in their place."""
     (tmp_path / "ball.toml").write_text(BALL, encoding="utf-8")
     (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
@@ -128,19 +129,18 @@ def test_three_draws_them_as_its_own_material(stages: str, tmp_path: Path) -> No
     numpy = compile(load_material(str(tmp_path / "ball.toml")), "numpy")
     shell = shell_of(scene, load_material(scene.material), numpy.reflection)
     mesh = place_mesh(scene, numpy, shell, registry.load("numpy"), SIZE)
-    for renderer in THREE.renderers:
-        page: Any = or_skip(partial(EnginePage, THREE), renderer)
-        try:
-            pictures = []
-            for given, properties in ((stages, {}), ("", OF_THREE[stages]), ("", {})):
-                material = parse_material(BALL + given, str(tmp_path / "ball.toml"))
-                compiled = compile(material, "threejs")
-                pictures.append(page_values.shade(compiled, mesh.shell, page, mesh.size, mesh.points, properties))
-        finally:
-            page.page.close()
-        ours, theirs, bare = (picture[..., :3][mesh.hit] for picture in pictures)
-        assert np.abs(ours - theirs).max() < 1e-3, renderer
-        assert np.abs(ours - bare).max() > 8.0 / 255.0
+    page: Any = or_skip(partial(EnginePage, THREE), renderer)
+    try:
+        pictures = []
+        for given, properties in ((stages, {}), ("", OF_THREE[stages]), ("", {})):
+            material = parse_material(BALL + given, str(tmp_path / "ball.toml"))
+            compiled = compile(material, "threejs")
+            pictures.append(page_values.shade(compiled, mesh.shell, page, mesh.size, mesh.points, properties))
+    finally:
+        page.page.close()
+    ours, theirs, bare = (picture[..., :3][mesh.hit] for picture in pictures)
+    assert np.abs(ours - theirs).max() < 1e-3
+    assert np.abs(ours - bare).max() > 8.0 / 255.0
 
 
 def test_every_target_carries_them_or_says_so(assert_compiles: Callable[[Source], None]) -> None:

@@ -28,6 +28,7 @@ from engine_cases import (
 from folders import ROOT
 from shadow_cases import LAMPS, Scene, check_absence, check_shadows, modules_of
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EnginePage
@@ -55,7 +56,7 @@ EXAMPLES = pytest.mark.parametrize(
 )
 
 
-@pytest.fixture(scope="module", params=list(PLAYCANVAS.renderers))
+@pytest.fixture(scope="module", params=some_slow(PLAYCANVAS.renderers, "webgl2"))
 def playcanvas(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     page: EnginePage = or_skip(partial(EnginePage, PLAYCANVAS), request.param)
     yield page
@@ -377,6 +378,7 @@ def test_parameters_are_properties() -> None:
     assert (names["cell_count"], names["metalness"]) == ("cellCount", "sssMetalness")  # PlayCanvas has a metalness
 
 
+@pytest.mark.slow
 def test_light_of_the_surroundings_comes_through(playcanvas: EnginePage, tmp_path: Path) -> None:
     check_surroundings(playcanvas, "playcanvas", BLACK, {"environment": 0.03}, tmp_path)
 

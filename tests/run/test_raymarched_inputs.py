@@ -78,6 +78,7 @@ def test_every_back_end_shows_the_same(name: str, backend: Callable[[str], Backe
     assert np.ptp(oracle[oracle[..., 0] > 0.0], axis=0).min() > 0.05
 
 
+@pytest.mark.slow
 def test_every_shell_compiles(folder: Path) -> None:
     """Those of Shader Graph too, which no back end draws."""
     report = compile_check.run(of_material(str(folder / "far.toml"), ()))

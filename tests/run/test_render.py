@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from lamp_scene import BALL, LAMP, RIBS, SIZE, largest_difference
+from slow_cases import diagonal
 from sssgen.cli.main import main
 from sssgen.run import backends
 from sssgen.run.backends import Backend
@@ -74,8 +75,7 @@ def probe(tmp_path: Path) -> Callable[..., Path]:
     return write
 
 
-@pytest.mark.parametrize("name", DRAWING)
-@pytest.mark.parametrize("alpha_mode", ["opaque", "mask", "blend"])
+@pytest.mark.parametrize(("name", "alpha_mode"), diagonal(DRAWING, ["opaque", "mask", "blend"]))
 def test_every_input_of_a_shell(
     name: str, alpha_mode: str, backend: Callable[[str], Backend], scene: Callable[..., str], probe: Callable[..., Path]
 ) -> None:
@@ -111,8 +111,9 @@ def test_how_near_each_light_is(
         assert shown.shape[0] > 100 and np.ptp(shown[:, 1]) > (0.02 if lamp in lights else -1.0)
 
 
-@pytest.mark.parametrize("name", DRAWING)
-@pytest.mark.parametrize("material", ["paper_lantern", "ice", "resin_inlay", "jelly_cubes"])
+@pytest.mark.parametrize(
+    ("name", "material"), diagonal(DRAWING, ["paper_lantern", "ice", "resin_inlay", "jelly_cubes"])
+)
 def test_examples_equal_numpy(
     name: str, material: str, backend: Callable[[str], Backend], scene: Callable[..., str]
 ) -> None:

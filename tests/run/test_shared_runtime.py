@@ -41,7 +41,11 @@ CASES = [
 NAMES = ("ice", "paper_lantern")
 
 
-@pytest.fixture(scope="module", params=CASES, ids=lambda case: case.engine.target)
+@pytest.fixture(
+    scope="module",
+    params=[CASES[0], *(pytest.param(case, marks=pytest.mark.slow) for case in CASES[1:])],
+    ids=lambda case: case.engine.target,
+)
 def case(request: pytest.FixtureRequest) -> Case:
     chosen: Case = request.param
     return chosen

@@ -17,6 +17,7 @@ import pytest
 
 from carried import carries
 from example_cases import ALIKE
+from slow_cases import diagonal, some_slow
 from sssgen.ir.types import VEC3
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import Compiled, all_targets, compile
@@ -163,8 +164,7 @@ def inner(picture: Array) -> Array:
     return picture[1:-1, 1:-1]
 
 
-@pytest.mark.parametrize(("name", "probe"), DRAWN_SHELLS)
-@pytest.mark.parametrize("case", HOSTILE)
+@pytest.mark.parametrize(("name", "probe", "case"), diagonal(DRAWN_SHELLS, HOSTILE))
 def test_hostile_points(
     case: str, probe: str, name: str, backend: Callable[[str], Backend], compiled_shell: Callable[[str, str], Compiled]
 ) -> None:
@@ -247,7 +247,7 @@ NORMALISING = re.compile(
 """Operations that give NaN for 0, with an argument that is not a constant."""
 
 
-@pytest.mark.parametrize("probe", MATERIALS)
+@pytest.mark.parametrize("probe", some_slow(MATERIALS, "lit", "unlit"))
 def test_the_probes_compile(
     probe: str, compiled_shell: Callable[[str, str], Compiled], assert_compiles: Callable[[Source], None]
 ) -> None:

@@ -51,7 +51,7 @@ BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
 
 
-@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu", "webgl2"))
+@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu"))
 def three(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
     yield renderer

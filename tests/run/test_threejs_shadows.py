@@ -96,7 +96,7 @@ def _with_the_sun(packages: Path) -> Mapping[str, Path]:
     return {**THREE.modules(packages), **sun}
 
 
-@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu", "webgl2"))
+@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu"))
 def scenes(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scenes]:
     engine = THREE._replace(script=str(Path(__file__).with_name("three_shadow_page.js")), modules=_with_the_sun)
     page: EnginePage = or_skip(partial(EnginePage, engine), request.param)

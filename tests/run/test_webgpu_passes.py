@@ -313,6 +313,7 @@ def test_the_light_inside_a_body(host: Host, tmp_path: Path, ior: float) -> None
     assert reached(host.draw(case), case, 0.95) > 20.0  # without the file the body is dark
 
 
+@pytest.mark.slow
 def test_pictures(host: Host, tmp_path: Path) -> None:
     """Each picture is that of the pipeline; row 0 of those in the page is at the top."""
     case = torus_case(tmp_path, SEVERAL, PICTURES)

@@ -79,6 +79,7 @@ def report(path: str = "report.xml") -> tuple[dict[str, str], dict[str, ET.Eleme
     return suite.attrib, {case.attrib["classname"]: case for case in suite.findall("testcase")}
 
 
+@pytest.mark.slow
 def test_with_pytest() -> None:
     assert run_pytest()[0] == 0
     brighten()

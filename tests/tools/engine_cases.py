@@ -58,10 +58,17 @@ MATERIALS = {
 MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
 ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
 RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
-QUICK = {("threejs", "webgl2"), ("threejs", "webgpu"), ("babylonjs", "webgl"), ("playcanvas", "webgpu")}
+
+
+def pages(*quick: tuple[str, str]) -> list[Any]:
+    """Parameters of a fixture that opens a page: those that are not quick run in `make test-long`."""
+    assert set(quick) <= set(RENDERERS)
+    marks = {pair: [] if pair in quick else [pytest.mark.slow] for pair in RENDERERS}
+    return [pytest.param(pair, id="-".join(pair), marks=marks[pair]) for pair in RENDERERS]
+
+
+PAGES = pages(("threejs", "webgpu"), ("babylonjs", "webgl"), ("playcanvas", "webgpu"))
 """Each engine, and both languages: a page takes seconds on the processor."""
-PAGES = [pytest.param(pair, id="-".join(pair), marks=[] if pair in QUICK else [pytest.mark.slow]) for pair in RENDERERS]
-"""Parameters of a fixture that opens a page: those that are not quick run in `make test-long`."""
 SIZE = (96, 72)
 BLACK: dict[str, dict[str, Any]] = {
     "threejs": {"color": 0.0, "specularIntensity": 0.0},

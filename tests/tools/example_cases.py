@@ -12,9 +12,10 @@ ALIKE = ("jelly", "candle", "ice_body", "leaves", "skin_ear", "soap", "milk_glas
 """Examples whose chains march through a distance function, or that have techniques of their own."""
 
 
-def example_cases() -> list[Any]:
-    """The names of all examples; of those that are alike all but one are slow."""
-    return [pytest.param(name, marks=marks(name)) for name in examples()]
+def example_cases(*expensive: str) -> list[Any]:
+    """The names of all examples; the expensive ones are slow, and of those that are alike all but one."""
+    slow = [pytest.mark.slow]
+    return [pytest.param(name, marks=slow if name in expensive else marks(name)) for name in examples()]
 
 
 def marks(name: str) -> list[pytest.MarkDecorator]:

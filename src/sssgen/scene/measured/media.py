@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from sssgen.scene.toml_table import Table, number, other, text, vector
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -132,7 +133,13 @@ def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str =
 def media(file: str = "") -> Mapping[str, MediumData]:
     """The media of `media.toml`, or of `file`, by name. Raises SssgenError with all errors in the file."""
     path = file or _FILE
-    document = parse(read_text(path, posix(path)), posix(path))
+    return _media_of(read_text(path, posix(path)), posix(path))
+
+
+@lru_cache(maxsize=8)
+def _media_of(source: str, path: str) -> Mapping[str, MediumData]:
+    """The media of a file's text."""
+    document = parse(source, path)
     result = {}
     for name, content in document.data.items():
         table = Table(document, (name,), content, _KEYS)
