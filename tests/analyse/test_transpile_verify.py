@@ -93,6 +93,7 @@ MISTAKES = [
 """One in each function."""
 
 
+@pytest.mark.slow
 def test_errors_of_the_front_end_are_found_in_every_text(rows: Rows) -> None:
     results = rows(FUNCTIONS, misread(*MISTAKES))
     assert len(results) == len(MISTAKES)

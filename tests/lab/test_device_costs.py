@@ -132,6 +132,7 @@ def test_the_programs_run(backend: Callable[[str], Backend]) -> None:
     assert chains.labels[0] == "operations, 64 rounds" and chains.counts[1]["operations"] > 2000
 
 
+@pytest.mark.slow
 def test_operators_and_materials_are_fitted_together() -> None:
     operators = timed(counted())
     materials = timed([dict(zip(OPERATORS, row, strict=True)) for row in ((90, 5, 2, 1, 0), (40, 2, 1, 3, 0))])

@@ -82,6 +82,7 @@ def _picture(case: drawn_lights.Case) -> np.ndarray:
     return values / problem.gain
 
 
+@pytest.mark.slow
 def test_even_surroundings_are_those_of_a_white_furnace() -> None:
     """The light that is scattered, and what is seen through the body."""
     scene = small_capsule()

@@ -238,6 +238,7 @@ def test_a_body_without_voxels_inside_is_an_error() -> None:
         field.field(body(Box((1.0, 1.0, 1e-4))), FEW._replace(voxels=4), processes=0)
 
 
+@pytest.mark.slow
 def test_the_bake_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from sssgen.cli.main import main
     from sssgen.scene.pictures.volumes import read

@@ -101,6 +101,7 @@ def compile_everywhere(path: Path, assert_compiles: Callable[[Source], None]) ->
                 assert_compiles(source)
 
 
+@pytest.mark.slow
 def test_structs_with_names_of_the_chain(tmp_path: Path, assert_compiles: Callable[[Source], None]) -> None:
     """The names that no descriptor reserves, as a chain declares them."""
     words = TAKEN | {"_FORWARD_PLUS", "ENDCG", "Varyings", "location", "clip_position"}

@@ -21,7 +21,7 @@ from sssgen.run.compilers import Source
 FORMS = ("shader", "functions")
 LACKING = {name: {"shadertoy"} for name in ("jade_ring", "marble_idol", "wax_mouse")}
 """The targets that cannot express an example: its textures are volumes, or a program draws them."""
-CASES = diagonal(example_cases(), FORMS)
+CASES = diagonal(example_cases("resin_inlay", "ice_inlay", "jelly_cubes"), FORMS)
 
 
 def emitted(name: str, form: str) -> dict[str, str]:

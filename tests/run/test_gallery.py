@@ -15,8 +15,9 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from example_cases import ALIKE, example_cases, marks
+from example_cases import example_cases
 from folders import ROOT
+from slow_cases import diagonal
 from sssgen.jobs.executor import Item, run
 from sssgen.jobs.result_store import Store
 from sssgen.material.material_loading import examples
@@ -40,7 +41,7 @@ def render_example(name: str, backend: str, samples: int = 1) -> RenderedPicture
     return render(dataclasses.replace(scene, size=SMALL, samples=samples), backends.get(backend))
 
 
-@pytest.mark.parametrize("name", example_cases())
+@pytest.mark.parametrize("name", example_cases("marble_idol"))
 def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -> None:
     backend("gl")
     picture = render_example(name, "gl")
@@ -56,12 +57,7 @@ def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -
     assert (covered_pixels.max(axis=1) - covered_pixels.min(axis=1)).mean() > 0.04
 
 
-EXPENSIVE = {"marble_idol", *ALIKE}
-DRAWN = [
-    pytest.param(name, compared, marks=[pytest.mark.slow] if name in EXPENSIVE and compared != "gl" else marks(name))
-    for name in examples()
-    for compared in ("gl", "webgpu", "browser", "hlsl")
-]
+DRAWN = diagonal(example_cases("marble_idol"), ["gl", "webgpu", "browser", "hlsl"])
 
 
 @pytest.mark.parametrize(("name", "compared"), DRAWN)

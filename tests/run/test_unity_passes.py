@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from slow_cases import some_slow
 from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FAR
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
@@ -50,7 +51,7 @@ LAMPS = (
 MATERIALS = {"one light": "depth_map_path", "several lights": "light_layers_path"}
 
 
-@pytest.fixture(scope="module", params=["URP 12", "URP 17"])
+@pytest.fixture(scope="module", params=some_slow(["URP 12", "URP 17"], "URP 17"))
 def program(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return compile_feature(request.param, tmp_path_factory.mktemp("feature"))
 

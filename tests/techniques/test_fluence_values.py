@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, rng, technique, unit, units
+from slow_cases import some_slow
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Settings
@@ -42,7 +43,7 @@ def traced() -> field.Field:
     return field.field(scene, Settings(voxels=8, side=SIDE - 2, photons=300), processes=0)
 
 
-@pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
+@pytest.mark.parametrize("name", some_slow(["fluence_factored_4", "fluence_factored_8"], "fluence_factored_8"))
 def test_the_techniques_read_what_the_bake_writes(name: str, traced: field.Field) -> None:
     pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[chart]'")
     rank = int(name[-1])
