@@ -40,6 +40,17 @@ CASES = {
         "float f(float x) { give(x); return x; }", 2.0, 3.0,
     ),
     "a macro with any text that is not used": ("#define NEVER \"$ @ ` \\ x\nfloat f(float x) { return x; }", 2.0, 2.0),
+    "declarations without their first name": (
+        "const float, g = 1.0, h = 2.0; vec3; uniform float; struct S { float a; }; S;"
+        "float f(float x) { struct T { float a; }, t; t.a = x; S s; s.a = t.a; S; float, a = 2.0, b[2]; b[1] = a;"
+        "const int, c = 1; int, d; d = c; for (int, i = 0; i < 3; i++) d += i; return g + h + s.a + b[1] + float(d); }",
+        3.0, 12.0,
+    ),
+    "a constant from the column of a matrix": (
+        "#version 300 es\nprecision highp float; struct S { mat2 m; }; const S s = S(mat2(1.0, 2.0, 3.0, 4.0));"
+        "float f(float x) { const S t = S(mat2(5.0)); const vec2 c = vec2(t.m); const vec4 v = vec4(s.m);"
+        "return x + c.x + v.w; }", 2.0, 11.0,
+    ),
     "an extension pack": (
         "#version 310 es\nprecision highp float;\n"
         "float f(float x) { return x + float(GL_ANDROID_extension_pack_es31a); }",

@@ -185,6 +185,17 @@ void main() { float first = third; color = vec4(first, second, third, fourth); }
         load("#version 330\nfloat one() { return 1.0; }\nfloat x = one();\n", "a.frag")
 
 
+def test_the_layout_of_buffers_that_follow() -> None:
+    """`layout(std140) buffer;` alone: an element of an array is 16 bytes behind the one before it, of std430 4."""
+    text = (
+        "#version 450\nlayout(local_size_x = 1) in;\nlayout(std140) buffer;\nbuffer Wide { float x[4]; };\n"
+        "layout(std430) buffer;\nbuffer Narrow { float y[4]; };\nvoid main() { y[1] = x[1]; }\n"
+    )
+    layouts = [variable.layout for variable in load(text, "case.comp").variables]
+    assert layouts == ["std140", "std430"]
+    assert "narrow[1] = asfloat(wide.Load(16));" in first(emitted(text, "case.comp", "hlsl"))
+
+
 def test_what_reads_a_writeonly_buffer_takes_the_word_away() -> None:
     """Atomics and out arguments read, too, and drivers refuse that of writeonly buffers."""
     text = (

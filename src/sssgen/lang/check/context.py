@@ -68,15 +68,17 @@ class FunctionContext:
         position: int | None = None,
         type_: Type | None = None,
         before: ir.Block = (),
+        constant: bool = False,
     ) -> ir.Local:
         """A new variable with this value, declared in the prelude (at its end, or at `position`).
 
         Its name is `name`, with a number where that is taken, also inside the statements `before` which it is declared.
+        `constant`: its value is a constant expression.
         """
         declared_type = type_ if type_ is not None else value.type if value is not None else FLOAT
         span = value.span if value is not None else ir.NOWHERE
         inner = {stmt.name for stmt in statements(before) if isinstance(stmt, ir.Declare)}
-        variable = self.scopes.invent(name, declared_type, inner)
+        variable = self.scopes.invent(name, declared_type, inner, constant)
         declaration = ir.Declare(variable.ir_name, declared_type, value, span)
         self.prelude.insert(len(self.prelude) if position is None else position, declaration)
         return ir.Local(declared_type, variable.ir_name, span)
@@ -114,6 +116,8 @@ class CheckContext:
         """The names of the uniform blocks so far."""
         self.uniform_layout: tuple[tuple[str, s.Expression | None], ...] = ()
         """The layout of all uniform blocks that follow."""
+        self.buffer_layout: tuple[tuple[str, s.Expression | None], ...] = ()
+        """The layout of all storage buffers that follow."""
         self.uniform_locations: dict[int, str] = {}
         """The locations that the file gives its uniforms → the names of these."""
         self.workgroup: tuple[int, ...] = ()

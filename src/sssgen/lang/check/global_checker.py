@@ -12,7 +12,7 @@ from sssgen.lang.check.image_checker import declare_image
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
-from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type
+from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type, names_type
 from sssgen.lang.check.uniform_hints import check_hints
 from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
@@ -55,6 +55,8 @@ class GlobalChecker:
         if not declaration.declarators and declaration.type.struct is None:
             if "invariant" in keywords or "precise" in keywords:
                 return  # no other language has these
+            if context.plain and names_type(context, declaration.type.name):
+                return  # `float;`
             raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)

@@ -117,12 +117,12 @@ class Scopes:
         self.stack[-1][name] = variable
         return self.add(variable)
 
-    def invent(self, name: str, type: Type, taken: Container[str] = ()) -> Variable:
+    def invent(self, name: str, type: Type, taken: Container[str] = (), constant: bool = False) -> Variable:
         """Adds a variable of the compiler to the innermost scope: no name that the author writes refers to it.
 
         `taken` are names of variables that will be in its scope in the IR.
         """
-        return self.add(Variable(self.unused(name, type, taken), type, "", True))
+        return self.add(Variable(self.unused(name, type, taken), type, "", True, constant=constant))
 
     def unused(self, name: str, type: Type, taken: Container[str] = ()) -> str:
         """`name`, with a number where the IR has a visible variable of that name."""

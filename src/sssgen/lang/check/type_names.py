@@ -78,6 +78,11 @@ def array_type(
     return element
 
 
+def names_type(context: CheckContext, name: str) -> bool:
+    """Whether a name is that of a type here."""
+    return context.function.scopes.find(name) is None and (name in BY_NAME or context.find_struct(name) is not None)
+
+
 def holds_array(type_: Type) -> bool:
     """Whether it is an array, or a struct with one in it."""
     if isinstance(type_, Struct):

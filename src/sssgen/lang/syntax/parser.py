@@ -137,13 +137,16 @@ _BEFORE_TYPE = frozenset(
 )
 
 
+def _is_qualifier(tokens: Sequence[Token], index: int) -> bool:
+    """Whether a keyword of later versions is a qualifier: it is before a type, or alone, as in `layout(…) buffer;`."""
+    following = tokens[index + 1].type if index + 1 < len(tokens) else ""
+    alone = following == "SEMICOLON" and index > 0 and tokens[index - 1].type == "RPAR"
+    return alone or following in _BEFORE_TYPE
+
+
 def _as_names(tokens: Sequence[Token]) -> Sequence[Token]:
     """The tokens; keywords of later versions become names where a qualifier is impossible."""
-    places = [
-        index
-        for index, token in enumerate(tokens)
-        if token.type in _LATER and (index + 1 == len(tokens) or tokens[index + 1].type not in _BEFORE_TYPE)
-    ]
+    places = [index for index, token in enumerate(tokens) if token.type in _LATER and not _is_qualifier(tokens, index)]
     if not places:
         return tokens
     changed = list(tokens)
