@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 from typing import NamedTuple
 
+from sssgen.ir.constant_evaluation import Value
 from sssgen.ir.nodes import Span
 from sssgen.ir.types import Struct, Type
 
@@ -18,7 +19,7 @@ class Variable(NamedTuple):
     writable: bool
     faulty: bool = False
     """Its declaration has an error. Its uses are not reported."""
-    value: tuple[object, ...] | None = None
+    value: Value | None = None
     """The value of a constant, as in `constant_values`."""
     constant: bool = False
     """Whether it is declared as const; a parameter is not, as its value is another one in each call."""
@@ -29,7 +30,7 @@ class GlobalValue(NamedTuple):
 
     type: Type
     quantity: str
-    value: tuple[object, ...] | None = None
+    value: Value | None = None
     constant: bool = False
     writable: bool = False
     extent: tuple[float, float] = (float("-inf"), float("inf"))
@@ -107,7 +108,7 @@ class Scopes:
         quantity: str,
         writable: bool,
         faulty: bool = False,
-        value: tuple[object, ...] | None = None,
+        value: Value | None = None,
         constant: bool = False,
     ) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
