@@ -69,6 +69,24 @@ CASES = {
         "float f(float x) { int n = gl_MaxVaryingFloats + gl_MinProgramTexelOffset;"
         " ivec3 s = gl_MaxComputeWorkGroupSize; return x + float(n + s.z); }", 1.0, 117.0,
     ),
+    "a struct inside of a variable's scope": (
+        "float f(float x) { float S = x; { struct S { float a; }; S s = S(S(2.0).a); x += s.a; } return x + S; }",
+        1.0, 4.0,
+    ),
+    "a variable whose value calls the function that it hides": (
+        "float g(float x) { return x * 2.0; } float f(float x) { float g = g(x); { float max = max(g, 1.0); g += max; }"
+        " return g; }", 3.0, 12.0,
+    ),
+    "arms of a statement without values": (
+        "void add(inout float n) { n += 1.0; } void take(inout float n) { n -= 1.0; }"
+        "float f(float x) { float n = x; x > 0.0 ? add(n) : take(n); int i = 0; x > 0.0 ? i++ : n;"
+        " x > 5.0 ? (n, add(n)) : add(n);"
+        " return n + float(i); }", 3.0, 6.0,
+    ),
+    "a function beside the builtins of its name in GLSL ES 1.00": (
+        "#version 100\nprecision highp float;\nfloat max(float a, float b, float c) { return max(max(a, b), c); }"
+        "float f(float x) { return max(x, 1.0, 4.0) + max(x, 2.0); }", 3.0, 7.0,
+    ),
     "a constant from the column of a matrix": (
         "#version 300 es\nprecision highp float; struct S { mat2 m; }; const S s = S(mat2(1.0, 2.0, 3.0, 4.0));"
         "float f(float x) { const S t = S(mat2(5.0)); const vec2 c = vec2(t.m); const vec4 v = vec4(s.m);"

@@ -197,6 +197,15 @@ def test_lengths_by_use() -> None:
     assert module.uniforms[1].default == (1.0, 0.5)
 
 
+@pytest.mark.parametrize("first", ["index = 1", "component = 1"])
+def test_outputs_that_share_a_location(first: str) -> None:
+    text = (
+        f"#version 450\nlayout(location = 0) out float a;\nlayout(location = 0, {first}) out float b;\n"
+        "void main() { a = b = 1.0; }\n"
+    )
+    assert [variable.location for variable in load(text, "case.frag").variables] == [0, 0]
+
+
 def test_the_layout_of_buffers_that_follow() -> None:
     """`layout(std140) buffer;` alone: an element of an array is 16 bytes behind the one before it, of std430 4."""
     text = (

@@ -114,12 +114,17 @@ def check_colors(context: CheckContext) -> None:
         last = max(colors, key=lambda variable: variable.span[1:3])
         message = "a shader of GLSL ES has either gl_FragColor or gl_FragData"
         context.reporter.error(last.span, message, "write gl_FragData[0] for gl_FragColor")
-    if context.es < 300 or context.language.vertex or any("blend_func" in name for name in context.language.extensions):
+    is_es = context.es >= 300
+    if not is_es and not context.language.desktop:
+        return
+    if is_es and (context.language.vertex or any("blend_func" in name for name in context.language.extensions)):
         return
     taken: set[int] = set()
     outputs = [each for each in context.variables.values() if each.storage == "out" and not each.builtin]
     for variable in outputs if len(outputs) > 1 else ():
         places = set(range(variable.location, variable.location + passed_locations(variable.type)))
+        if variable.name in context.sharing or (variable.location < 0 and not is_es):
+            continue  # the linker chooses a location
         if variable.location < 0:
             message = f"'{variable.name}' needs a location, as this shader has several outputs"
             context.reporter.error(variable.span, message, "write layout(location = 0) before it")

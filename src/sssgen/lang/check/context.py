@@ -124,6 +124,8 @@ class CheckContext:
         """The layout of all storage buffers that follow."""
         self.uniform_locations: dict[int, str] = {}
         """The locations that the file gives its uniforms → the names of these."""
+        self.sharing: set[str] = set()
+        """The outputs that share a location with others: they state their components, or their index for blending."""
         self.workgroup: tuple[int, ...] = ()
         """The sizes of a compute shader's workgroup."""
         self.buffer_members: dict[str, ir.Member] = {}

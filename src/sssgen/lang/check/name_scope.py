@@ -95,6 +95,13 @@ class Scopes:
                 return scope[name]
         return None
 
+    def hides(self, name: str) -> bool:
+        """Whether a variable hides the functions and structs of its name that are declared outside of its scope."""
+        for variables, structs in zip(reversed(self.stack), reversed(self.structs), strict=True):
+            if name in variables or name in structs:
+                return name not in structs
+        return False
+
     def find_struct(self, name: str) -> Struct | None:
         for scope in reversed(self.structs):
             if name in scope:

@@ -81,6 +81,8 @@ class ShaderInterface:
                 (keyword for keyword in keywords if keyword in ("flat", "noperspective", "centroid")), ""
             )
             location = self.location(declaration.qualifiers)
+            if any(item in ("component", "index") for item, _ in declaration.qualifiers.layout):
+                context.sharing.add(name)
             if value is not None and (storage == "in" or (storage == "out" and context.es)):
                 raise context.fail(span, "what stages pass on has no initial value", "write it in main()")
             if value is not None and storage == "shared":
