@@ -41,7 +41,7 @@ class Case(NamedTuple):
     expects: str
     """`pass`, `build_successful`, `compile_fail`, `link_fail`, …"""
     requires: tuple[str, ...]
-    """What a driver must have to run it"""
+    """What a driver must have to run it, such as `extension GL_A | GL_B in vertex, fragment`"""
     values: tuple[Value, ...]
     stages: dict[str, str]
     """Stage → text, with the marks that `deqp_programs` replaces"""
@@ -159,25 +159,24 @@ class _Reader:
 
     def requirement(self, word: str) -> list[str]:
         if word == "active_stages" or self.next == ("mark", "{"):
-            names = []
-            self.expect("{")
-            while not self.accept("}"):
-                names.append(self.take()[1])
+            names = self.listed()
             return names if word == "require" else [word]
         required = [self.take()[1]]
         if required[0] == "limit":
             required += [self.take()[1] for _ in range(3)]
         if required[0] == "extension":
-            if self.accept("{"):
-                while not self.accept("}"):
-                    required.append(self.take()[1])
-            else:
-                required.append(self.take()[1])
+            required += self.listed() if self.next == ("mark", "{") else [self.take()[1]]
         if self.accept("in"):
-            self.expect("{")
-            while not self.accept("}"):
-                self.take()
+            required += ["in", *self.listed()]
         return [" ".join(required)]
+
+    def listed(self) -> list[str]:
+        """The words and marks between braces."""
+        words = []
+        self.expect("{")
+        while not self.accept("}"):
+            words.append(self.take()[1])
+        return words
 
     def values(self) -> Iterator[Value]:
         self.expect("{")

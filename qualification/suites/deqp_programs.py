@@ -24,6 +24,8 @@ from sssgen.support.diagnostics import failure
 
 NEAR = 0.05
 """A float is right within this distance, plus this share of its value: the suite's own limit."""
+_VERSION = re.compile(r"^#version.*", re.MULTILINE)
+_EXTENSION = re.compile(r"extension (?P<name>\w+)(?: \| \w+)*(?: in (?P<stages>.*))?")
 _MARK = re.compile(r"\$\{([A-Z_]+)(?::[a-z-]+)?\}")
 
 
@@ -70,7 +72,7 @@ def stage_text(case: Case, stage: str) -> str:
         "POSITION_FRAG_COLOR": color if fragment else "gl_Position",
         "VERTEX_OUTPUT": "gl_Position = dEQP_Position;",
     }
-    text = _MARK.sub(lambda mark: marks.get(mark[1], ""), text)
+    text = with_extensions(case, stage, _MARK.sub(lambda mark: marks.get(mark[1], ""), text))
     return text if case.version not in ("", "100 es") or "#version" in text else f"#version 100\n{text}"
 
 
@@ -88,7 +90,15 @@ def function_text(case: Case) -> Plain:
     if case.version not in ("", "100 es") and "POSITION_FRAG_COLOR" in text:
         marks["POSITION_FRAG_COLOR"] = "dEQP_FragColor"
         marks["DECLARATIONS"] += "\nvec4 dEQP_FragColor;"
-    return plain(_MARK.sub(lambda mark: marks.get(mark[1], ""), text))
+    return plain(with_extensions(case, "fragment", _MARK.sub(lambda mark: marks.get(mark[1], ""), text)))
+
+
+def with_extensions(case: Case, stage: str, text: str) -> str:
+    """A stage's text with a directive for each extension that the case requires in it; of several the first one."""
+    needed = [_EXTENSION.fullmatch(line) for line in case.requires]
+    names = [match["name"] for match in needed if match and stage in (match["stages"] or stage)]
+    directives = "".join([f"\n#extension {name} : require" for name in names])
+    return _VERSION.sub(lambda match: match[0] + directives, text, count=1)
 
 
 def _lacks(text: str, uniform: Value) -> bool:

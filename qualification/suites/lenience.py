@@ -25,6 +25,9 @@ LENIENCE = {
         r"interpolation_mismatch|centroid-mismatched",
         "the fragment shader decides on the interpolation, as in GLSL from 4.40 on",
     ),
+    "attributes": Lenience(
+        r"functionControlAttributes", "what stands between [[ and ]] is advice to a compiler and is left out unread"
+    ),
     "Vulkan and OpenGL": Lenience(
         r"glslang/(nonVulkan|spv\.|vk\.|glspv|glsl\.\d+\.layoutOffset)",
         "a text may have what OpenGL's GLSL and what Vulkan's has, such as offsets of members in old versions",

@@ -73,7 +73,9 @@ def page_cases(page: str, name: str) -> Iterator[WebglCase]:
     for vertex, fragment in dict.fromkeys(seen):
         texts = shaders[vertex], shaders[fragment]
         if _version(texts[0]) == _version(texts[1]) == "300" and "$(" not in "".join(texts):
-            yield TextCase(f"{name}#{vertex},{fragment}", "shader.frag", texts[1].lstrip(), texts[0].lstrip())
+            case = f"{name}#{vertex},{fragment}"
+            valid = "bad" not in fragment  # a page that expects an error calls it that
+            yield TextCase(case, "shader.frag", texts[1].lstrip(), texts[0].lstrip(), valid=valid)
 
 
 def _tested(shaders: Mapping[str, str], code: str, name: str) -> Iterator[WebglCase]:
@@ -120,7 +122,9 @@ def _described(shaders: Mapping[str, str], name: str) -> Iterator[TextCase]:
     given = [shaders.get(id_, "").strip() + "\n" for id_ in ("vertexShader", "fragmentShader")]
     valid = ["fail" not in text.partition("\n")[0] for text in given]
     vertex, fragment = _with_default(*(text if text.strip() else "" for text in given))
-    text = TextCase(name, "shader.frag", fragment, vertex, valid=all(valid))
+    faulty = all(valid) and re.search(r"\battribute\b", fragment)
+    skipped = "the page's fragment shader has an attribute, which GLSL does not allow" if faulty else ""
+    text = TextCase(name, "shader.frag", fragment, vertex, valid=all(valid), skipped=skipped)
     if any(word.strip() for word in given):
         yield text if all(valid) else _one_of(text, valid)
 

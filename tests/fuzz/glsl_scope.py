@@ -93,9 +93,10 @@ class Scoped(ABC):
         return symbols
 
     def new_name(self, names: tuple[str, ...] = ()) -> str:
-        """A name that is free in the innermost scope; it may hide one outside."""
+        """A name that is free in the innermost scope; it may hide one outside, but no struct: that is constructed."""
         scope, names = self.scopes[-1], names or self.names
-        taken = self.program.macros.keys() | (self.used_globals if len(self.scopes) == 1 else set())
+        taken = self.program.macros.keys() | self.program.structs.keys()
+        taken |= self.used_globals if len(self.scopes) == 1 else set()
         for _ in range(20):
             name = self.random.choice(names)
             if name not in scope and name not in taken:

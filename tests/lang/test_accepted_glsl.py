@@ -40,6 +40,58 @@ CASES = {
         "float f(float x) { give(x); return x; }", 2.0, 3.0,
     ),
     "a macro with any text that is not used": ("#define NEVER \"$ @ ` \\ x\nfloat f(float x) { return x; }", 2.0, 2.0),
+    "declarations without their first name": (
+        "const float, g = 1.0, h = 2.0; vec3; uniform float; struct S { float a; }; S;"
+        "float f(float x) { struct T { float a; }, t; t.a = x; S s; s.a = t.a; S; float, a = 2.0, b[2]; b[1] = a;"
+        "const int, c = 1; int, d; d = c; for (int, i = 0; i < 3; i++) d += i; return g + h + s.a + b[1] + float(d); }",
+        3.0, 12.0,
+    ),
+    "the length of an array by its use": (
+        "float f(float x) { float a[]; a[3] = x; int b[2], n = 0; a[b.length()] = 2.0;"
+        " for (int i = 0; i < a.length(); i++) n++;"
+        " return a[2] * 10.0 + a[3] + float(n) * 100.0; }", 3.0, 423.0,
+    ),
+    "values in braces": (
+        "struct S { float a; vec2 b[2]; }; const S C = {1.0, {{1.0, 2.0}, {3, 4},},};"
+        "const float G[][2] = {{1, 2}, {3, 4}};"
+        "float f(float x) { S none = {}; mat2 m = {{x, 2}, {3, 4}}; vec2 v[3] = {};"
+        " S s[] = {C, {x, {vec2(1), {2, x}}}};"
+        " return none.b[1].x + m[0][0] + v[2].y + s[1].b[1].y * 10.0 + G[1][0] * 100.0 + s[0].b[1].x * 1000.0; }",
+        5.0, 3355.0,
+    ),
+    "attributes of control flow": (
+        "#version 450\n#extension GL_EXT_control_flow_attributes : enable\n"
+        "float f(float x) { [[unroll]] for (int i = 0; i < 3; i++) [[flatten, dependency_length(2)]]"
+        " if (x > 0.0) x *= 2.0;"
+        " int a[2] = int[2](1, 0); [ [ branch ] ] switch (a[a[1]]) { case 1: x += 1.0; } return x; }", 3.0, 25.0,
+    ),
+    "limits of the language": (
+        "float f(float x) { int n = gl_MaxVaryingFloats + gl_MinProgramTexelOffset;"
+        " ivec3 s = gl_MaxComputeWorkGroupSize; return x + float(n + s.z); }", 1.0, 117.0,
+    ),
+    "a struct inside of a variable's scope": (
+        "float f(float x) { float S = x; { struct S { float a; }; S s = S(S(2.0).a); x += s.a; } return x + S; }",
+        1.0, 4.0,
+    ),
+    "a variable whose value calls the function that it hides": (
+        "float g(float x) { return x * 2.0; } float f(float x) { float g = g(x); { float max = max(g, 1.0); g += max; }"
+        " return g; }", 3.0, 12.0,
+    ),
+    "arms of a statement without values": (
+        "void add(inout float n) { n += 1.0; } void take(inout float n) { n -= 1.0; }"
+        "float f(float x) { float n = x; x > 0.0 ? add(n) : take(n); int i = 0; x > 0.0 ? i++ : n;"
+        " x > 5.0 ? (n, add(n)) : add(n);"
+        " return n + float(i); }", 3.0, 6.0,
+    ),
+    "a function beside the builtins of its name in GLSL ES 1.00": (
+        "#version 100\nprecision highp float;\nfloat max(float a, float b, float c) { return max(max(a, b), c); }"
+        "float f(float x) { return max(x, 1.0, 4.0) + max(x, 2.0); }", 3.0, 7.0,
+    ),
+    "a constant from the column of a matrix": (
+        "#version 300 es\nprecision highp float; struct S { mat2 m; }; const S s = S(mat2(1.0, 2.0, 3.0, 4.0));"
+        "float f(float x) { const S t = S(mat2(5.0)); const vec2 c = vec2(t.m); const vec4 v = vec4(s.m);"
+        "return x + c.x + v.w; }", 2.0, 11.0,
+    ),
     "an extension pack": (
         "#version 310 es\nprecision highp float;\n"
         "float f(float x) { return x + float(GL_ANDROID_extension_pack_es31a); }",

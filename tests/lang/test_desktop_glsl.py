@@ -6,6 +6,7 @@ import pytest
 
 from qualification.suites.compiled_texts import complaint
 from sssgen.ir.nodes import Module
+from sssgen.ir.types import spell
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import Compiled, transpile
 from sssgen.pipeline.two_stages import Source, transpile_stages
@@ -183,6 +184,37 @@ void main() { float first = third; color = vec4(first, second, third, fourth); }
     assert places == sorted(places) and "fourth: f32 = 4.0;" in emitted_text
     with pytest.raises(SssgenError, match=r"no main\(\) that could set it"):
         load("#version 330\nfloat one() { return 1.0; }\nfloat x = one();\n", "a.frag")
+
+
+def test_lengths_by_use() -> None:
+    text = (
+        "#version 450\nout vec4 color;\nuniform vec4 tints[];\nuniform float gains[2] = {1.0, 0.5};\n"
+        "vec2 a[];\nvec2 b[];\nvec2 b[4];\nvoid main() { a[1] = vec2(1.0); b[2] = a[0]; color = tints[6] * a[1].x; }\n"
+    )
+    module = load(text, "case.frag")
+    lengths = {each.name: spell(each.type) for each in (*module.uniforms, *module.variables)}
+    assert lengths == {"tints": "vec4[7]", "gains": "float[2]", "color": "vec4", "a": "vec2[2]", "b": "vec2[4]"}
+    assert module.uniforms[1].default == (1.0, 0.5)
+
+
+@pytest.mark.parametrize("first", ["index = 1", "component = 1"])
+def test_outputs_that_share_a_location(first: str) -> None:
+    text = (
+        f"#version 450\nlayout(location = 0) out float a;\nlayout(location = 0, {first}) out float b;\n"
+        "void main() { a = b = 1.0; }\n"
+    )
+    assert [variable.location for variable in load(text, "case.frag").variables] == [0, 0]
+
+
+def test_the_layout_of_buffers_that_follow() -> None:
+    """`layout(std140) buffer;` alone: an element of an array is 16 bytes behind the one before it, of std430 4."""
+    text = (
+        "#version 450\nlayout(local_size_x = 1) in;\nlayout(std140) buffer;\nbuffer Wide { float x[4]; };\n"
+        "layout(std430) buffer;\nbuffer Narrow { float y[4]; };\nvoid main() { y[1] = x[1]; }\n"
+    )
+    layouts = [variable.layout for variable in load(text, "case.comp").variables]
+    assert layouts == ["std140", "std430"]
+    assert "narrow[1] = asfloat(wide.Load(16));" in first(emitted(text, "case.comp", "hlsl"))
 
 
 def test_what_reads_a_writeonly_buffer_takes_the_word_away() -> None:

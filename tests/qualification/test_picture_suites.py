@@ -178,7 +178,9 @@ def test_a_page_of_the_tester() -> None:
 
 def test_another_page_with_shaders() -> None:
     (case,) = webgl_cases.page_cases(DRAWN, "b.html")
+    (bad,) = webgl_cases.page_cases(DRAWN.replace("fs", "badfs"), "b.html")
     assert isinstance(case, TextCase) and case.name == "b.html#vs,fs" and case.valid
+    assert isinstance(bad, TextCase) and not bad.valid  # the page names what does not link
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from qualification.suites.deqp_cases import Case, SuiteFormatError, Value, read
+from qualification.suites.deqp_programs import stage_text
 from qualification.suites.deqp_runs import run_case
 from qualification.suites.lenience import LENIENCE, class_of
 from qualification.suites.outcomes import Result
@@ -92,6 +93,18 @@ def test_a_file_is_read(tmp_path: Path) -> None:
     assert vector.stages["both"].startswith("#version 300 es\nprecision highp float;\n")
     assert wrong.expects == "compile_fail" and [*stages.stages] == ["vertex", "fragment"]
     assert [*geometry.stages] == ["geometry"]
+
+
+def test_required_extensions_are_in_the_texts_of_their_stages(tmp_path: Path) -> None:
+    path = tmp_path / "own.test"
+    extension = 'require extension { "GL_OWN_a" | "GL_OWN_b" } in { vertex }\n        require extension "GL_OWN_c"'
+    text = TEXT.replace("RIGHT", "1.5").replace("between_stages\n", f"between_stages\n        {extension}\n")
+    path.write_text(text, "utf-8")
+    case = next(each for each in read(path, "own") if "vertex" in each.stages)
+    assert case.requires == ("extension GL_OWN_a | GL_OWN_b in vertex", "extension GL_OWN_c")
+    lines = ["#version 300 es", "#extension GL_OWN_a : require", "#extension GL_OWN_c : require"]
+    assert stage_text(case, "vertex").splitlines()[:3] == lines
+    assert stage_text(case, "fragment").splitlines()[:2] == [lines[0], lines[2]]
 
 
 def test_a_file_in_another_format(tmp_path: Path) -> None:

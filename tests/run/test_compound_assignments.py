@@ -34,6 +34,11 @@ CASES = [
      3.0, 206.0),
     ("void g(inout float y) { y = 7.0; } float f(float x) { vec2 v = vec2(x); g(v[int(v.x++)]); return v.x + v.y; }",
      1.0, 9.0),
+    ("float f(float x) { ivec2 w = ivec2(x, 7); w.yx += w.xy++; return float(w.x * 100 + w.y); }", 3.0, 1010.0),
+    ("float f(float x) { int q[3] = int[3](2, 1, int(x)); q[q[1]] = q[q[1]++] + 3;"
+     " return float(q[0] * 100 + q[1] * 10 + q[2]); }", 5.0, 245.0),
+    ("float f(float x) { int q[3] = int[3](2, 0, int(x)); q[q[1]] = q[1]++ * 7 + q[1];"
+     " return float(q[0] * 100 + q[1] * 10 + q[2]); }", 5.0, 115.0),
     ("float f(float x) { bool b = x > 0.0; x += b && (x += 1.0) > 0.0 ? x : 0.0; return x; }", 3.0, 7.0),
 ]  # fmt: skip
 READ = """

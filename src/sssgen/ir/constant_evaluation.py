@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Number
+from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, Type, Vector, components, kind_of
+from sssgen.ir.walk import operands
 
 _RELATIONS = {
     "<": "lessThan", "<=": "lessThanEqual", ">": "greaterThan", ">=": "greaterThanEqual", "==": "equal",
@@ -17,6 +19,28 @@ _RELATIONS = {
 
 Value: TypeAlias = tuple[Any, ...]
 """The numbers of a scalar, vector or matrix (column after column); the values of an array's or struct's parts."""
+
+
+def evaluate(expr: ir.Expr, named: Callable[[ir.Local | ir.Global], Value | None]) -> Value | None:
+    """The value of a constant expression; None where it is not constant, or not defined.
+
+    `named` gives the value of a variable or a constant, where it has one. A pass that rewrites the parts of an
+    expression (`wide_constants.py`), or reports those without a value (`undefined_constants.py`), visits them itself.
+    """
+    if isinstance(expr, ir.Literal):
+        return constant_numbers(expr)
+    if isinstance(expr, ir.Local | ir.Global):
+        return named(expr)
+    if isinstance(expr, ir.Select):  # the other arm need not be defined
+        condition = evaluate(expr.condition, named)
+        return None if condition is None else evaluate(expr.yes if condition[0] else expr.no, named)
+    values: list[Value] = []
+    for operand in () if isinstance(expr, ir.Call) else operands(expr):
+        value = evaluate(operand, named)
+        if value is None:
+            return None
+        values.append(value)
+    return combine(expr, values) if values else None
 
 
 def combine(expr: ir.Expr, values: Sequence[Value]) -> Value | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import operator_type
-from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
+from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Type, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext, Typed
 from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
@@ -46,23 +46,34 @@ class AssignmentChecker:
         function.prelude.append(statement)
         return Typed(value)
 
-    def effect(self, expression: s.Expression) -> None:
-        """Adds the side effects of an expression to the prelude; its value is not used."""
+    def effect(self, expression: s.Expression) -> Type:
+        """Adds the side effects of an expression to the prelude; its value, of this type, is not used."""
         prelude = self.context.function.prelude
         if isinstance(expression, s.Assignment):
-            prelude.append(self.assign(expression))
-        elif isinstance(expression, s.Comma):
-            for part in expression.parts:
-                self.effect(part)
-        elif isinstance(expression, s.Conditional):
-            condition = self.expressions.check_as(expression.condition, BOOL, "", "a condition")
-            _, yes = self.expressions.with_prelude(expression.yes, self.effect)
-            _, no = self.expressions.with_prelude(expression.no, self.effect)
-            if yes or no:
-                prelude.append(ir.If(condition, tuple(yes), tuple(no), expression.span))
-        else:
-            self.expressions.dropped.add(id(expression))
-            self.calls_of(self.expressions.check(expression).expr)
+            statement = self.assign(expression)
+            prelude.append(statement)
+            return statement.target.type
+        if isinstance(expression, s.Comma):
+            return [self.effect(part) for part in expression.parts][-1]
+        if isinstance(expression, s.Conditional):
+            return self.branch(expression)
+        self.expressions.dropped.add(id(expression))
+        value = self.expressions.check(expression).expr
+        self.calls_of(value)
+        return value.type
+
+    def branch(self, conditional: s.Conditional) -> Type:
+        """Adds the side effects of `?:` to the prelude; its value, of this type, is not used."""
+        context = self.context
+        condition = self.expressions.check_as(conditional.condition, BOOL, "", "a condition")
+        one, yes = self.expressions.with_prelude(conditional.yes, self.effect)
+        other, no = self.expressions.with_prelude(conditional.no, self.effect)
+        if yes or no:
+            context.function.prelude.append(ir.If(condition, tuple(yes), tuple(no), conditional.span))
+        if one != other and not (context.converts and (converts(one, other) or converts(other, one))):
+            message = f"the two arms differ: {a_type(one)} and {a_type(other)}"
+            raise context.fail(conditional.span, message, "write if and else")
+        return other if converts(one, other) else one
 
     def calls_of(self, value: ir.Expr) -> None:
         """Adds the calls in an unused value to the prelude, as they may have side effects."""

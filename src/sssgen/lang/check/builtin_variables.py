@@ -3,7 +3,21 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Field, Struct, Type, Vector, passed_locations
+from sssgen.ir.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    UINT,
+    VEC2,
+    VEC4,
+    Array,
+    Field,
+    Struct,
+    Type,
+    Vector,
+    passed_locations,
+    vector_of,
+)
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.syntax import tree as s
@@ -54,9 +68,19 @@ _SAME = {"gl_FragDepthEXT": "gl_FragDepth", "gl_VertexIndex": "gl_VertexID", "gl
 _LIMITS = {
     "gl_MaxDrawBuffers": 8, "gl_MaxTextureImageUnits": 16, "gl_MaxVertexAttribs": 16, "gl_MaxVertexUniformVectors": 256,
     "gl_MaxFragmentUniformVectors": 256, "gl_MaxVaryingVectors": 15, "gl_MaxCombinedTextureImageUnits": 32,
-    "gl_MaxVertexTextureImageUnits": 16,
+    "gl_MaxVertexTextureImageUnits": 16, "gl_MaxVertexOutputVectors": 15, "gl_MaxFragmentInputVectors": 15,
+    "gl_MinProgramTexelOffset": -8, "gl_MaxProgramTexelOffset": 7, "gl_MaxSamples": 4, "gl_MaxImageUnits": 8,
+    "gl_MaxVertexImageUniforms": 0, "gl_MaxFragmentImageUniforms": 4, "gl_MaxComputeImageUniforms": 4,
+    "gl_MaxComputeTextureImageUnits": 16, "gl_MaxComputeUniformComponents": 1024,
+    "gl_MaxComputeWorkGroupCount": (65535, 65535, 65535), "gl_MaxComputeWorkGroupSize": (256, 256, 64),
+    # desktop GLSL alone
+    "gl_MaxVertexUniformComponents": 1024, "gl_MaxFragmentUniformComponents": 1024, "gl_MaxVaryingComponents": 60,
+    "gl_MaxVaryingFloats": 60, "gl_MaxVertexOutputComponents": 60, "gl_MaxFragmentInputComponents": 60,
+    "gl_MaxClipDistances": 8, "gl_MaxClipPlanes": 6, "gl_MaxLights": 8, "gl_MaxTextureUnits": 2,
+    "gl_MaxTextureCoords": 8,
 }  # fmt: skip
-"""GLSL's implementation limits, with the values that WebGPU guarantees."""
+"""GLSL's implementation limits, with the values that WebGPU guarantees, and those of the fixed pipeline, with the least
+that GLSL allows."""
 
 
 _FRAGMENT = {
@@ -90,12 +114,17 @@ def check_colors(context: CheckContext) -> None:
         last = max(colors, key=lambda variable: variable.span[1:3])
         message = "a shader of GLSL ES has either gl_FragColor or gl_FragData"
         context.reporter.error(last.span, message, "write gl_FragData[0] for gl_FragColor")
-    if context.es < 300 or context.language.vertex or any("blend_func" in name for name in context.language.extensions):
+    is_es = context.es >= 300
+    if not is_es and not context.language.desktop:
+        return
+    if is_es and (context.language.vertex or any("blend_func" in name for name in context.language.extensions)):
         return
     taken: set[int] = set()
     outputs = [each for each in context.variables.values() if each.storage == "out" and not each.builtin]
     for variable in outputs if len(outputs) > 1 else ():
         places = set(range(variable.location, variable.location + passed_locations(variable.type)))
+        if variable.name in context.sharing or (variable.location < 0 and not is_es):
+            continue  # the linker chooses a location
         if variable.location < 0:
             message = f"'{variable.name}' needs a location, as this shader has several outputs"
             context.reporter.error(variable.span, message, "write layout(location = 0) before it")
@@ -111,7 +140,9 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
     if not context.plain:
         return None
     if text in _LIMITS:
-        limit = context.globals[text] = GlobalValue(INT, "", (_LIMITS[text],), True)
+        value = _LIMITS[text]
+        numbers = value if isinstance(value, tuple) else (value,)
+        limit = context.globals[text] = GlobalValue(vector_of("int", len(numbers)), "", numbers, True)
         return limit
     if text == "gl_WorkGroupSize" and context.workgroup:
         size = context.globals[text] = GlobalValue(Vector("uint", 3), "", context.workgroup, True)

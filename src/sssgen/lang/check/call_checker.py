@@ -50,6 +50,8 @@ class CallChecker:
         if isinstance(callee, s.TypeName):
             return self.constructors.type_constructor(callee, call)
         name = callee.text
+        if context.plain and context.function.scopes.hides(name):
+            raise context.fail(callee.span, f"'{name}' is a variable here", "give the variable another name")
         struct = context.find_struct(name)
         if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
             return self.constructors.construct_parts(struct, call)
@@ -61,9 +63,10 @@ class CallChecker:
         exact = _exact(overloads, types)
         if exact is not None:
             return self.call_function(name, exact, args, call)
-        if name in BUILTINS and (not overloads or (context.plain and resolve(name, types) is not None)):
+        beside = context.plain and not self.hides_builtins(overloads)
+        if name in BUILTINS and (not overloads or (beside and resolve(name, types) is not None)):
             return self.call_intrinsic(name, args, call)
-        if overloads and not (context.plain and out_builtins.out_builtin(name, types)):
+        if overloads and not (beside and out_builtins.out_builtin(name, types)):
             return self.call_function(name, self.overload(name, args, call), args, call)
         if name in q.QUANTITIES and not context.plain:
             return self.constructors.construct(q.QUANTITIES[name], name, args, call)
@@ -73,6 +76,11 @@ class CallChecker:
                 return result
         known = [*context.functions, *context.structs, *(() if context.plain else q.QUANTITIES), *BUILTINS]
         raise context.unknown(callee.span, "function", name, known)
+
+    def hides_builtins(self, overloads: Sequence[Signature]) -> bool:
+        """Whether functions hide the builtins of their name, as those of a file of desktop GLSL do (4.60, 4.2.2)."""
+        own = any(not signature.span.file.startswith("intrinsics/") for signature in overloads)
+        return own and self.context.language.desktop > 0
 
     def outs(self, name: str, overloads: Sequence[Signature], call: s.CallOf) -> set[int]:
         """The positions of the out arguments in a call."""
@@ -162,7 +170,9 @@ class CallChecker:
             count = len(only.types)
             if count != len(args):
                 message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {len(args)}"
-                raise self.context.fail(call.span, message, f"it is declared as {signature_text(name, only)}")
+                hidden = ", and hides the builtin" if name in BUILTINS and self.hides_builtins(overloads) else ""
+                hint = f"it is declared as {signature_text(name, only)}{hidden}"
+                raise self.context.fail(call.span, message, hint)
             return only
         if self.context.converts:
             viable = [signature for signature in overloads if _is_viable(signature, types)]

@@ -7,10 +7,10 @@ or swizzle of constants.
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.constant_evaluation import Value, combine
+from sssgen.ir.constant_evaluation import Value, evaluate
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import INT, UINT
-from sssgen.ir.walk import operands, subexpressions
+from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
 
@@ -28,22 +28,13 @@ def integer(context: CheckContext, expr: ir.Expr) -> int | None:
 
 def constant_value(context: CheckContext, expr: ir.Expr) -> Value | None:
     """The value of a checked constant expression; None where it is not constant, or not defined."""
-    if isinstance(expr, ir.Literal):
-        return (expr.value,)
-    if isinstance(expr, ir.Local):
-        return context.function.scopes.visible[expr.name].value
-    if isinstance(expr, ir.Global):
-        return context.globals[expr.name].value
-    if isinstance(expr, ir.Select):  # the other arm need not be defined
-        condition = constant_value(context, expr.condition)
-        return None if condition is None else constant_value(context, expr.yes if condition[0] else expr.no)
-    values: list[Value] = []
-    for operand in () if isinstance(expr, ir.Call) else operands(expr):
-        value = constant_value(context, operand)
-        if value is None:
-            return None
-        values.append(value)
-    return combine(expr, values) if values else None
+
+    def named(name: ir.Local | ir.Global) -> Value | None:
+        if isinstance(name, ir.Local):
+            return context.function.scopes.visible[name.name].value
+        return context.globals[name.name].value
+
+    return evaluate(expr, named)
 
 
 def is_constant(context: CheckContext, expr: ir.Expr) -> bool:

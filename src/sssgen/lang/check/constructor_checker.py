@@ -22,6 +22,7 @@ from sssgen.ir.types import (
 )
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
+from sssgen.lang.check.constant_values import is_constant
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts, literal_as
@@ -137,7 +138,7 @@ class ConstructorChecker:
         function = self.context.function
         if isinstance(value, ir.Local | ir.Global) or function is self.context.file_scope:
             return value
-        return function.temporary(name, value)
+        return function.temporary(name, value, constant=is_constant(self.context, value))
 
     def literal(self, literal: ir.Literal, type_: Scalar, span: ir.Span) -> ir.Literal:
         """A literal converted by a constructor. Reports a float that no int or uint can hold."""

@@ -68,15 +68,17 @@ class FunctionContext:
         position: int | None = None,
         type_: Type | None = None,
         before: ir.Block = (),
+        constant: bool = False,
     ) -> ir.Local:
         """A new variable with this value, declared in the prelude (at its end, or at `position`).
 
         Its name is `name`, with a number where that is taken, also inside the statements `before` which it is declared.
+        `constant`: its value is a constant expression.
         """
         declared_type = type_ if type_ is not None else value.type if value is not None else FLOAT
         span = value.span if value is not None else ir.NOWHERE
         inner = {stmt.name for stmt in statements(before) if isinstance(stmt, ir.Declare)}
-        variable = self.scopes.invent(name, declared_type, inner)
+        variable = self.scopes.invent(name, declared_type, inner, constant)
         declaration = ir.Declare(variable.ir_name, declared_type, value, span)
         self.prelude.insert(len(self.prelude) if position is None else position, declaration)
         return ir.Local(declared_type, variable.ir_name, span)
@@ -100,6 +102,10 @@ class CheckContext:
         self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]
         """Checks an expression; the checker of expressions sets it."""
+        self.length_by_use: Callable[[str], int] = lambda name: 0
+        """Gives the length of an array without one in desktop GLSL, by its name; 0 where its use says none."""
+        self.declared_without_length: set[str] = set()
+        """The variables at file scope that may be declared again, with their length."""
         self.struct_precisions: dict[str, str] = {}
         """The precisions of the members of structs, by the struct's name."""
         self.sequences = 0
@@ -114,8 +120,12 @@ class CheckContext:
         """The names of the uniform blocks so far."""
         self.uniform_layout: tuple[tuple[str, s.Expression | None], ...] = ()
         """The layout of all uniform blocks that follow."""
+        self.buffer_layout: tuple[tuple[str, s.Expression | None], ...] = ()
+        """The layout of all storage buffers that follow."""
         self.uniform_locations: dict[int, str] = {}
         """The locations that the file gives its uniforms → the names of these."""
+        self.sharing: set[str] = set()
+        """The outputs that share a location with others: they state their components, or their index for blending."""
         self.workgroup: tuple[int, ...] = ()
         """The sizes of a compute shader's workgroup."""
         self.buffer_members: dict[str, ir.Member] = {}

@@ -13,13 +13,14 @@ from collections.abc import Callable, Container, Sequence
 from typing import Any, TypeVar
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import literal, zero
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Struct, Type, kind_of, spell, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
-from sssgen.lang.check.constant_values import integer, integer_value
+from sssgen.lang.check.constant_values import integer_value
 from sssgen.lang.check.context import AlreadyReported, CheckContext, Typed
 from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
 from sssgen.lang.check.implicit_conversions import as_kind, converts, wrapped
@@ -63,6 +64,8 @@ class ExpressionChecker:
 
     def check_as(self, expression: s.Expression, type_: Type, quantity: str, what: str) -> ir.Expr:
         """Checks an expression that must have this type and quantity; `what` names it in messages."""
+        if isinstance(expression, s.Listed) and not expression.items and not self.context.es:
+            return zero(type_, expression.span)
         if isinstance(expression, s.Listed):
             return self.listed_as(expression, type_, what)
         return self.require(self.check(expression), type_, quantity, expression.span, what)
@@ -99,6 +102,9 @@ class ExpressionChecker:
             raise self.context.fail(listed.span, message)
         values = list[Typed]()
         for item, part in zip(listed.items, types, strict=True):
+            if isinstance(item, s.Listed) and not item.items:
+                hint = "list the values of each part, or write {} for the whole value"
+                raise self.context.fail(item.span, "{} is no value of a part", hint)
             before = len(self.context.function.prelude)
             values.append(Typed(self.check_as(item, part, "", what)))
             if len(self.context.function.prelude) > before:
@@ -193,6 +199,8 @@ class ExpressionChecker:
         if not lengths:
             return element
         items = _item_counts(declarator.value)
+        if declarator.value is None and isinstance(lengths[0], s.Unsized) and self.context.plain:
+            items = [self.context.length_by_use(declarator.name.text)]
         unsized = [index for index, length in enumerate(lengths) if isinstance(length, s.Unsized)]
         if declarator.value is not None and unsized and unsized[-1] >= len(items):
             value, _ = self.with_prelude(declarator.value, self.check)
@@ -233,11 +241,8 @@ class ExpressionChecker:
         value = context.globals.get(text) or builtin_variable(context, name)
         if value is not None:
             reference = ir.Global(value.type, text, name.span)
-            if value.constant and name.text == "gl_WorkGroupSize":
-                sizes = tuple([ir.Literal(UINT, size, name.span) for size in context.workgroup])
-                return Typed(ir.Construct(value.type, sizes, name.span))
-            if value.constant and name.text.startswith("gl_"):
-                return Typed(ir.Literal(INT, integer(context, reference) or 0, name.span))
+            if value.constant and value.value and name.text.startswith("gl_"):
+                return Typed(literal(value.type, value.value, name.span))
             return Typed(reference, value.quantity)
         if name.text in context.buffer_members:
             return Typed(context.buffer_members[name.text]._replace(span=name.span))
@@ -254,7 +259,7 @@ class ExpressionChecker:
         raise self.context.fail(unsized.span, "an index is missing between the brackets")
 
     def listed(self, listed: s.Listed) -> Typed:
-        raise self.context.fail(listed.span, "{…} is allowed only as the value of a declaration")
+        raise self.context.fail(listed.span, "{…} does not say all lengths", "write them, or braces for each part")
 
 
 def _item_counts(value: s.Expression | None) -> Sequence[int]:

@@ -49,8 +49,8 @@ class FunctionChecker:
         if function.body is None:
             return declaration
         errors = len(context.reporter.diagnostics)
-        if context.plain and context.es < 300:
-            context.function.scopes.push()  # older GLSL lets a variable hide a parameter
+        if context.plain and context.es < 300 and not context.language.desktop:
+            context.function.scopes.push()  # GLSL ES 1.00 lets a variable hide a parameter
         body = self.statements.statements(function.body.statements)
         reaches_end = not returns(body)
         if result != VOID and not returns(body[-1:]) and (context.plain or not reaches_end):

@@ -12,7 +12,7 @@ from sssgen.lang.check.image_checker import declare_image
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
-from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type
+from sssgen.lang.check.type_names import check_sequences, named_element, names_type
 from sssgen.lang.check.uniform_hints import check_hints
 from sssgen.lang.check.uniform_locations import uniform_location
 from sssgen.lang.check.wording import a_type
@@ -55,6 +55,8 @@ class GlobalChecker:
         if not declaration.declarators and declaration.type.struct is None:
             if "invariant" in keywords or "precise" in keywords:
                 return  # no other language has these
+            if context.plain and names_type(context, declaration.type.name):
+                return  # `float;`
             raise context.fail(declaration.type.span, "this declares nothing", "write a type and a name")
         if declaration.type.struct is not None:
             declare_struct(context, declaration.type.struct)
@@ -81,8 +83,8 @@ class GlobalChecker:
     def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str, path: str, element: int) -> None:
         context, name = self.context, declarator.name
         check_global_name(context, name)
-        type_, quantity = named_type(context, declaration.type)
-        type_ = array_type(context, type_, declarator.lengths)
+        element_type, quantity = named_element(context, declaration.type)
+        type_ = self.expressions.declared_type(element_type, declaration.type, declarator)
         has_struct = isinstance(unnested(type_)[0], Struct)
         if type_ == VOID or (has_struct and not context.plain):
             raise context.fail(declaration.type.span, f"a uniform cannot be {a_type(type_)}")
@@ -107,8 +109,12 @@ class GlobalChecker:
         if isinstance(type_, Sampler):
             hint = "use default_white, default_black, default_gray or default_bump"
             raise self.context.fail(value.span, "a texture has no default value", hint)
-        typed = self.expressions.check(value)._replace(quantity="")
-        numbers = _components(self.expressions.require(typed, type_, "", value.span, f"'{declarator.name.text}'"))
+        what = f"'{declarator.name.text}'"
+        if isinstance(value, s.Listed):
+            numbers = _components(self.expressions.check_as(value, type_, "", what))
+        else:
+            typed = self.expressions.check(value)._replace(quantity="")
+            numbers = _components(self.expressions.require(typed, type_, "", value.span, what))
         if numbers is None:
             hint = "write it as 0.2 or vec3(1.0, 0.5, 0.0)"
             raise self.context.fail(value.span, "a default value must consist of literals", hint)

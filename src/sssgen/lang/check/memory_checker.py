@@ -45,6 +45,8 @@ class MemoryChecker:
                 message = "std430 is a layout of storage buffers, not of uniform blocks"
                 raise context.fail(layout.qualifiers.span, message, "write std140")
             context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
+        if "buffer" in layout.qualifiers.keywords:
+            context.buffer_layout = (*context.buffer_layout, *layout.qualifiers.layout)
         if not (sizes or specialized) or "in" not in layout.qualifiers.keywords:
             return
         if 0 < context.es < 310:
@@ -77,7 +79,8 @@ class MemoryChecker:
                     message = "only the last member of a storage buffer can have no length"
                     raise context.fail(declarator.name.span, message)
                 fields.append(Field(declarator.name.text, self.member_type(member, declarator)))
-        layouts = [block.qualifiers.layout, *[member.qualifiers.layout for member in block.members]]
+        own = (*context.buffer_layout, *block.qualifiers.layout)
+        layouts = [own, *[member.qualifiers.layout for member in block.members]]
         rows = any(name == "row_major" for layout in layouts for name, _ in layout)
         if rows and any(_has_matrix(field.type) for field in fields):
             message = "matrices of storage buffers are stored column by column here, not row_major"
@@ -86,7 +89,7 @@ class MemoryChecker:
         access = next((word for word in keywords if word in ("readonly", "writeonly")), "")
         if not access and all("readonly" in member.qualifiers.keywords for member in block.members):
             access = "readonly"
-        items = dict(block.qualifiers.layout)
+        items = dict(own)
         binding = constant_int(context, value) if (value := items.get("binding")) is not None else -1
         if binding is None or not -1 <= binding < 1000:
             raise context.fail(block.name.span, "a binding must be an integer from 0 to 999")
@@ -99,7 +102,7 @@ class MemoryChecker:
         name = block.instance.text if block.instance is not None else f"{label[0].lower()}{label[1:]}"
         if block.instance is None and (name == label or name in context.file_names):
             name = unused_global_name(context, f"{name}_buffer")
-        layout = "std140" if "std140" in items else "std430"
+        layout = next((name for name, _ in reversed(own) if name in ("std140", "std430")), "std430")
         context.variables[name] = ir.Variable(
             name, struct, "buffer", None, "", "", binding, block.doc, block.name.span, access, layout
         )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
@@ -23,6 +24,7 @@ from sssgen.lang.check.declared_names import declare_struct, names_of_file
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.function_checker import FunctionChecker
 from sssgen.lang.check.global_checker import GlobalChecker
+from sssgen.lang.check.implicit_lengths import length_by_use
 from sssgen.lang.check.loop_checker import LoopChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.operator_checker import OperatorChecker
@@ -107,6 +109,8 @@ class ModuleChecker:
         """Checks a file. A function may call only functions that are declared before it."""
         context = self.context
         context.file_names = names_of_file(file)
+        if not context.es:
+            context.length_by_use = partial(length_by_use, file)
         for external in file.externals:
             try:
                 self.external(external)

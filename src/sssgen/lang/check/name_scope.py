@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 from typing import NamedTuple
 
+from sssgen.ir.constant_evaluation import Value
 from sssgen.ir.nodes import Span
 from sssgen.ir.types import Struct, Type
 
@@ -18,7 +19,7 @@ class Variable(NamedTuple):
     writable: bool
     faulty: bool = False
     """Its declaration has an error. Its uses are not reported."""
-    value: tuple[object, ...] | None = None
+    value: Value | None = None
     """The value of a constant, as in `constant_values`."""
     constant: bool = False
     """Whether it is declared as const; a parameter is not, as its value is another one in each call."""
@@ -29,7 +30,7 @@ class GlobalValue(NamedTuple):
 
     type: Type
     quantity: str
-    value: tuple[object, ...] | None = None
+    value: Value | None = None
     constant: bool = False
     writable: bool = False
     extent: tuple[float, float] = (float("-inf"), float("inf"))
@@ -94,6 +95,13 @@ class Scopes:
                 return scope[name]
         return None
 
+    def hides(self, name: str) -> bool:
+        """Whether a variable hides the functions and structs of its name that are declared outside of its scope."""
+        for variables, structs in zip(reversed(self.stack), reversed(self.structs), strict=True):
+            if name in variables or name in structs:
+                return name not in structs
+        return False
+
     def find_struct(self, name: str) -> Struct | None:
         for scope in reversed(self.structs):
             if name in scope:
@@ -107,7 +115,7 @@ class Scopes:
         quantity: str,
         writable: bool,
         faulty: bool = False,
-        value: tuple[object, ...] | None = None,
+        value: Value | None = None,
         constant: bool = False,
     ) -> Variable | None:
         """Adds a variable to the innermost scope; None if this scope has the name already."""
@@ -117,12 +125,12 @@ class Scopes:
         self.stack[-1][name] = variable
         return self.add(variable)
 
-    def invent(self, name: str, type: Type, taken: Container[str] = ()) -> Variable:
+    def invent(self, name: str, type: Type, taken: Container[str] = (), constant: bool = False) -> Variable:
         """Adds a variable of the compiler to the innermost scope: no name that the author writes refers to it.
 
         `taken` are names of variables that will be in its scope in the IR.
         """
-        return self.add(Variable(self.unused(name, type, taken), type, "", True))
+        return self.add(Variable(self.unused(name, type, taken), type, "", True, constant=constant))
 
     def unused(self, name: str, type: Type, taken: Container[str] = ()) -> str:
         """`name`, with a number where the IR has a visible variable of that name."""

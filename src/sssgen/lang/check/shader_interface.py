@@ -59,8 +59,13 @@ class ShaderInterface:
                     raise context.fail(span, f"'{name}' cannot be declared again", "leave the declaration out")
                 builtin_variable(context, declarator.name)  # redeclared for its qualifiers
                 continue
-            check_global_name(context, declarator.name)
             type_ = self.expressions.declared_type(element, declaration.type, declarator)
+            if name in context.declared_without_length and context.globals[name].type == type_:
+                context.declared_without_length.remove(name)
+                continue
+            check_global_name(context, declarator.name)
+            if declarator.value is None and any(isinstance(length, s.Unsized) for length in declarator.lengths):
+                context.declared_without_length.add(name)
             if type_ == VOID or isinstance(type_, Sampler):
                 hint = "write uniform before it" if isinstance(type_, Sampler) else ""
                 raise context.fail(declaration.type.span, f"a variable cannot be {a_type(type_)}", hint)
@@ -76,6 +81,8 @@ class ShaderInterface:
                 (keyword for keyword in keywords if keyword in ("flat", "noperspective", "centroid")), ""
             )
             location = self.location(declaration.qualifiers)
+            if any(item in ("component", "index") for item, _ in declaration.qualifiers.layout):
+                context.sharing.add(name)
             if value is not None and (storage == "in" or (storage == "out" and context.es)):
                 raise context.fail(span, "what stages pass on has no initial value", "write it in main()")
             if value is not None and storage == "shared":

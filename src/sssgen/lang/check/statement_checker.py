@@ -26,7 +26,7 @@ from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.memory_checker import stored_directly
-from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type
+from sssgen.lang.check.type_names import array_type, check_sequences, named_element, named_type, names_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
 
@@ -151,6 +151,8 @@ class StatementChecker:
     def expression(self, statement: s.ExpressionStatement) -> list[ir.Stmt]:
         plain, value = self.context.plain, statement.value
         if plain and isinstance(value, s.TypeName):  # a declaration of nothing, `float;`
+            return []
+        if plain and isinstance(value, s.Name) and names_type(self.context, value.text):  # `Light;`
             return []
         if isinstance(value, s.Comma) or (plain and isinstance(value, s.Conditional)):
             self.assignments.effect(value)

@@ -73,9 +73,15 @@ def array_type(
             count = items[index]
         total *= count or 0
         if count is None or count < 1 or total > 65536:
-            raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
+            hint = "write it, as no other part of the file says it" if isinstance(length, s.Unsized) else ""
+            raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536", hint)
         element = Array(element, count)
     return element
+
+
+def names_type(context: CheckContext, name: str) -> bool:
+    """Whether a name is that of a type here."""
+    return context.function.scopes.find(name) is None and (name in BY_NAME or context.find_struct(name) is not None)
 
 
 def holds_array(type_: Type) -> bool:

@@ -255,7 +255,8 @@ class _Run:
         elif name == "undef":
             macro = self.macro_name(self.tokens_of(file, rest, place), place, name)
             if macro is not None:
-                if self.version and macro.text.startswith("GL_"):
+                of_language = macro.text == "defined" and "defined" not in self.expander.macros
+                if self.version and (of_language or macro.text.startswith("GL_")):
                     self.error(macro.span, f"'{macro.text}' belongs to the language, which defines it")
                 self.undefine(macro.text)
         elif name == "include":

@@ -77,6 +77,10 @@ def parse_tokens(
             externals = run(grammar_tables.load(), remaining, builder.methods) if remaining else []
             break
         except Unexpected as error:
+            without = _without_attributes(remaining) if plain and _begins_attribute(remaining, error.index) else None
+            if without is not None:
+                remaining = without
+                continue
             _report(error, remaining, reporter)
             remaining = _without_declaration(remaining, error.index)
     for place, message in builder.wrong:
@@ -137,13 +141,16 @@ _BEFORE_TYPE = frozenset(
 )
 
 
+def _is_qualifier(tokens: Sequence[Token], index: int) -> bool:
+    """Whether a keyword of later versions is a qualifier: it is before a type, or alone, as in `layout(…) buffer;`."""
+    following = tokens[index + 1].type if index + 1 < len(tokens) else ""
+    alone = following == "SEMICOLON" and index > 0 and tokens[index - 1].type == "RPAR"
+    return alone or following in _BEFORE_TYPE
+
+
 def _as_names(tokens: Sequence[Token]) -> Sequence[Token]:
     """The tokens; keywords of later versions become names where a qualifier is impossible."""
-    places = [
-        index
-        for index, token in enumerate(tokens)
-        if token.type in _LATER and (index + 1 == len(tokens) or tokens[index + 1].type not in _BEFORE_TYPE)
-    ]
+    places = [index for index, token in enumerate(tokens) if token.type in _LATER and not _is_qualifier(tokens, index)]
     if not places:
         return tokens
     changed = list(tokens)
@@ -174,6 +181,25 @@ def _report(error: Unexpected, tokens: list[Token], reporter: Reporter) -> None:
         message += f"; expected {' or '.join(wanted)}"
     hint = "it is a keyword of GLSL: choose another name" if "NAME" in accepted and token.text[0].isalpha() else ""
     reporter.error(token.span, message, hint)
+
+
+def _begins_attribute(tokens: Sequence[Token], place: int) -> bool:
+    return [token.type for token in tokens[place : place + 2]] == ["LSQB", "LSQB"]
+
+
+def _without_attributes(tokens: Sequence[Token]) -> list[Token] | None:
+    """The tokens without attributes such as `[[unroll]]`: they advise a compiler, and other languages lack them.
+
+    None where one does not end.
+    """
+    kept: list[Token] = []
+    depth = 0
+    for index, token in enumerate(tokens):
+        if depth == 0 and not _begins_attribute(tokens, index):
+            kept.append(token)
+        elif token.type in ("LSQB", "RSQB"):
+            depth += 1 if token.type == "LSQB" else -1
+    return None if depth else kept
 
 
 def _shorten(text: str, limit: int = 40) -> str:

@@ -192,6 +192,8 @@ class Builder:
     def as_statement(self, child: Any) -> Any:
         if child is None or isinstance(child, s.Statement):
             return child
+        if isinstance(child, s.Comma) and (declaration := _without_first(child)):
+            return declaration
         return s.ExpressionStatement(child, child.span, getattr(child, "depth", 0))
 
     def declaration(self, children: list[Any]) -> s.Declaration:
@@ -344,6 +346,20 @@ def _filled(statements: list[Any]) -> list[Any]:
         s.Compound((), before.span, 0) if statement is None and isinstance(before, s.Label) else statement
         for before, statement in zip([None, *statements], statements, strict=False)
     ]
+
+
+def _without_first(comma: s.Comma) -> s.Declaration | None:
+    """`float, a = 1.0;`, which has the form of a sequence: GLSL lets a declaration begin without a name."""
+    type_, *parts = map(as_type, comma.parts)
+    names = [as_type(part.target) if isinstance(part, s.Assignment) and not part.op else part for part in parts]
+    if not isinstance(comma.parts[0], s.TypeName) or not all(isinstance(name, s.TypeName) for name in names):
+        return None
+    values = [part.value if isinstance(part, s.Assignment) else None for part in parts]
+    declarators = [
+        s.Declarator(s.Name(name.name, name.span), name.lengths, value)
+        for name, value in zip(names, values, strict=True)
+    ]
+    return s.Declaration(s.PLAIN, type_, tuple(declarators), comma.span, comma.depth)
 
 
 def as_type(expression: Any) -> Any:

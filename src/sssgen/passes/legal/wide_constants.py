@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sssgen.ir import constant_arithmetic as arithmetic
-from sssgen.ir.constant_evaluation import Value, combine
+from sssgen.ir.constant_evaluation import Value, combine, evaluate
 from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Unary
 from sssgen.ir.types import kind_of
@@ -65,21 +65,15 @@ def overflowing_division(expr: Expr, constants: Mapping[str, Expr]) -> Value | N
     """
     if not isinstance(expr, Binary) or expr.op not in ("/", "%") or kind_of(expr.type) != "int":
         return None
-    right = _constant(expr.right, constants)
-    left = _constant(expr.left, constants) if right is not None and -1 in right else None
+
+    def named(name: Local | Global) -> Value | None:
+        return evaluate(constants[name.name], named) if name.name in constants and isinstance(name, Global) else None
+
+    right = evaluate(expr.right, named)
+    left = evaluate(expr.left, named) if right is not None and -1 in right else None
     if left is None or right is None or -0x80000000 not in left:
         return None
     return combine(expr, (left, right))
-
-
-def _constant(expr: Expr, constants: Mapping[str, Expr]) -> Value | None:
-    if isinstance(expr, Literal):
-        return constant_numbers(expr)
-    if isinstance(expr, Global):
-        return _constant(constants[expr.name], constants) if expr.name in constants else None
-    parts = [_constant(operand, constants) for operand in operands(expr)]
-    known = [part for part in parts if part is not None]
-    return combine(expr, known) if known and len(known) == len(parts) else None
 
 
 def is_wider(expr: Expr, parts: Sequence[Value], numbers: Value) -> bool:
