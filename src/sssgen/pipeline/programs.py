@@ -71,13 +71,18 @@ def make_library(
     form = kind if kind in target.files else "functions"
     if module.workgroup:
         _check_compute(target, form)
-    if (module.workgroup or has_buffers(module)) and guards != "none":
-        raise failure("a shader with memory takes no guards: other invocations write it, too", "write --guards none")
+    check_guards(module, guards)
     state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
     return target_program(state, trace)
+
+
+def check_guards(module: Module, guards: str) -> None:
+    """Raises SssgenError where a shader with memory is to have guards."""
+    if (module.workgroup or has_buffers(module)) and guards != "none":
+        raise failure("a shader with memory takes no guards: other invocations write it, too", "write --guards none")
 
 
 def _check_compute(target: Target, form: str) -> None:
