@@ -55,13 +55,14 @@ class Sampler(NamedTuple):
     """A texture together with its sampler.
 
     `dim` is 2D, 3D or Cube, `kind` that of its texels: float, int or uint; `array` says that it has layers, `shadow`
-    that a read compares.
+    that a read compares. `line`: the source has one dimension; after the check it is a texture of two with one row.
     """
 
     dim: str
     kind: str = "float"
     array: bool = False
     shadow: bool = False
+    line: bool = False
 
 
 class Image(NamedTuple):
@@ -109,8 +110,16 @@ IMAGES: dict[str, Image] = {
 }
 """The names of images, which are variables of whole shaders alone."""
 
+LINES: dict[str, Sampler] = {
+    f"{prefix}sampler1D{'Array' if array else ''}{'Shadow' if shadow else ''}": Sampler("2D", kind, array, shadow, True)
+    for prefix, kind in (("", "float"), ("i", "int"), ("u", "uint"))
+    for array in (False, True)
+    for shadow in ((False, True) if kind == "float" else (False,))
+}
+"""The names of textures of one dimension, which plain GLSL alone has."""
+
 _NAMES: dict[Type, str] = {}
-for _name, _type in (*BY_NAME.items(), *IMAGES.items()):
+for _name, _type in (*BY_NAME.items(), *IMAGES.items(), *LINES.items()):
     _NAMES.setdefault(_type, _name)
 
 VEC2, VEC3, VEC4 = Vector("float", 2), Vector("float", 3), Vector("float", 4)

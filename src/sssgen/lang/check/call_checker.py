@@ -21,6 +21,7 @@ from sssgen.lang.check.constructor_checker import ConstructorChecker
 from sssgen.lang.check.context import AlreadyReported, Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
+from sssgen.lang.check.line_textures import is_line, line_size, plane_arguments
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import Signature
 from sssgen.lang.check.wording import a_type, overload_hint, signature_text
@@ -134,6 +135,15 @@ class CallChecker:
         divided = place._replace(expr=ir.Binary(whole.type, "/", whole, last, span))
         return self.call_intrinsic(PROJECTIVE_READS[name], [texture, divided, *rest], call)
 
+    def line_read(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
+        """A read of a texture of one dimension, from a texture of one row."""
+        plane = plane_arguments(name, args, self.context.converts)
+        if plane is None:
+            types = [spell(arg.expr.type) for arg in args]
+            raise self.context.fail(call.span, f"no overload of {name} takes ({', '.join(types)})")
+        result = self.call_intrinsic(name, plane, call)
+        return result._replace(expr=line_size(result.expr)) if name == "textureSize" else result
+
     def method(self, callee: s.MemberOf, call: s.CallOf) -> Typed:
         """`values.length()`, the only method."""
         if callee.name.text != "length" or call.args:
@@ -222,6 +232,8 @@ class CallChecker:
 
     def call_intrinsic(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
         """A call of a builtin."""
+        if is_line(args):
+            return self.line_read(name, args, call)
         values = tuple([arg.expr for arg in args])
         result = resolve(name, [value.type for value in values])
         if result is None and self.context.converts:
