@@ -54,8 +54,9 @@ class Struct(NamedTuple):
 class Sampler(NamedTuple):
     """A texture together with its sampler.
 
-    `dim` is 2D, 3D or Cube, `kind` that of its texels: float, int or uint; `array` says that it has layers, `shadow`
-    that a read compares. `line`: the source has one dimension; after the check it is a texture of two with one row.
+    `dim` is 2D, 3D, Cube or 2DMS (several samples to a texel), `kind` that of its texels: float, int or uint; `array`
+    says that it has layers, `shadow` that a read compares. `line`: the source has one dimension; after the check it is
+    a texture of two with one row.
     """
 
     dim: str
@@ -98,8 +99,9 @@ for _dim in ("2D", "Cube"):
     BY_NAME[f"sampler{_dim}Array"] = Sampler(_dim, array=True)
     BY_NAME[f"sampler{_dim}Shadow"] = Sampler(_dim, shadow=True)
 BY_NAME["sampler2DArrayShadow"] = Sampler("2D", array=True, shadow=True)
+BY_NAME["sampler2DMS"] = Sampler("2DMS")
 for _kind, _prefix in (("int", "i"), ("uint", "u")):
-    for _dim in ("2D", "3D", "Cube"):
+    for _dim in ("2D", "3D", "Cube", "2DMS"):
         BY_NAME[f"{_prefix}sampler{_dim}"] = Sampler(_dim, _kind)
     BY_NAME[f"{_prefix}sampler2DArray"] = Sampler("2D", _kind, array=True)
 

@@ -253,7 +253,7 @@ def _texture(
 ) -> ProgramTexture:
     type_ = uniform.type
     assert isinstance(type_, Sampler)
-    dimension = type_.dim.lower() + ("-array" if type_.array else "")
+    dimension = type_.dim.removesuffix("MS").lower() + ("-array" if type_.array else "")
     sample = "depth" if type_.shadow else {"int": "sint", "uint": "uint"}.get(type_.kind, "float")
     sampler = "comparison" if type_.shadow else "filtering" if sample == "float" and sampled else "non-filtering"
     return {
@@ -263,5 +263,6 @@ def _texture(
         "sample_type": sample,
         "filterable": sampled and sample == "float",
         "sampler": sampler if sampled or passed else "",
+        "multisampled": type_.dim == "2DMS",
         "binding": binding,
     }

@@ -408,6 +408,8 @@ class ProgramTexture(TypedDict):
     filterable: bool
     sampler: str
     """filtering, comparison, non-filtering, or '' where it needs none."""
+    multisampled: bool
+    """Whether a texel has several samples."""
     binding: TextureBinding | None
 
 

@@ -82,7 +82,7 @@ _UNSUPPORTED = (
     (r"[iu]?image\w+", "images are image2D, image3D and image2DArray here, of float, int and uint"),
     (r"[iu]?sampler2DRect\w*", "WebGPU has no such textures; write sampler2D, and divide coordinates by textureSize"),
     (r"[iu]?samplerBuffer", "WebGPU has no such textures; write a readonly storage buffer, or sampler2D"),
-    (r"[iu]?sampler2DMS\w*", "textures with several samples are not among those that are translated"),
+    (r"[iu]?sampler2DMSArray", "WebGPU has no such textures; write a sampler2DMS for each layer"),
     (r"atomic_uint", "atomics belong to compute shaders"),
 )
 

@@ -19,7 +19,7 @@
 /** @typedef {{ uniform: string, type: string, count: number, offset: number, array_stride: number, matrix_stride: number,
  *   block?: BlockPlace & { stride: number } }} Place  Where the numbers of a name are; `uniform` is the whole that it belongs to. */
 /** @typedef {{ name: string, stages: string[], dimension: GPUTextureViewDimension, sample_type: GPUTextureSampleType,
- *   filterable: boolean, sampler: GPUSamplerBindingType | '', binding: { group: number, texture: number, sampler: number } }} Texture */
+ *   filterable: boolean, sampler: GPUSamplerBindingType | '', multisampled: boolean, binding: { group: number, texture: number, sampler: number } }} Texture */
 /** @typedef {{ name: string, stages: string[], access: string, binding: { binding: number } }} Memory */
 /** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
 /** @typedef {{ format: number, program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
@@ -75,9 +75,9 @@ export class Program {
     /** @type {GPUBindGroupLayoutEntry[]} */
     const entries = block ? [{ binding: block.binding, visibility: 3, buffer: {} }] : [];
     for (const texture of description.textures) {
-      const { binding, dimension, sampler } = texture, visibility = visible(texture.stages);
+      const { binding, dimension, sampler, multisampled } = texture, visibility = visible(texture.stages);
       const sampleType = sampleTypes[texture.name] ?? (texture.filterable || texture.sample_type !== 'float' ? texture.sample_type : 'unfilterable-float');
-      entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension } });
+      entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension, multisampled } });
       const type = sampler === 'filtering' && sampleType !== 'float' ? 'non-filtering' : sampler;
       if (type) entries.push({ binding: binding.sampler, visibility, sampler: { type } });
     }
@@ -298,8 +298,9 @@ export class Values {
     if (!this.bindGroup) {
       /** @type {GPUBindGroupEntry[]} */
       const entries = block && buffer ? [{ binding: block.binding, resource: { buffer } }] : [];
-      for (const { name, dimension, sample_type, sampler, binding } of description.textures) {
+      for (const { name, dimension, sample_type, sampler, multisampled, binding } of description.textures) {
         const given = this.resources.get(name);
+        if (multisampled && !given) throw new Error(`${description.program}: '${name}' has no value: call setTexture with a texture of several samples`);
         entries.push({ binding: binding.texture, resource: given?.view ?? blackTexture(device, sample_type, dimension === '3d' ? '3d' : '2d').createView({ dimension }) });
         const own = sampler === 'non-filtering' ? null : given?.sampler; // its texels are read one by one
         if (sampler) entries.push({ binding: binding.sampler, resource: own ?? device.createSampler(sampler === 'comparison' ? { compare: 'less-equal' } : {}) });
