@@ -264,6 +264,10 @@ class Function(NamedTuple):
     def key(self) -> str:
         return function_key(self.name, [param.type for param in self.params])
 
+    def begun_with(self, stmts: Block) -> Function:
+        """The function with these statements first."""
+        return self._replace(body=(*stmts, *(self.body or ())))
+
 
 class Uniform(NamedTuple):
     """A value or texture set from outside. `default` holds its components, empty for a texture.

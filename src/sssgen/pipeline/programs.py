@@ -195,7 +195,7 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     surface_reads = {kind: _members_read(function, surface) for kind, (function, _) in entries.items()}
     later_glsl = any(BUILTINS[name].later_glsl for name in builtins_of(module) if name in BUILTINS)
-    later_glsl = later_glsl or any(variable.builtin == "gl_SampleMaskIn" for variable in module.variables)
+    later_glsl = later_glsl or any(variable.builtin in target.later_builtins for variable in module.variables)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
         Diagnostic("warning", note.message, note.span, note.hint, source_line(note.span)) for note in state.notes

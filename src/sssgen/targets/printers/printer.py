@@ -34,7 +34,7 @@ from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.number_text import float_text
-from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, is_postfix, summary, wrap
 from sssgen.targets.uniform_layout import Member
 
 if TYPE_CHECKING:
@@ -183,7 +183,7 @@ class Printer:
         text = self.inlined.get(local.name)
         if text is None:
             return local.name, PRIMARY
-        return text, PRIMARY if _is_postfix(text) else TERNARY
+        return text, PRIMARY if is_postfix(text) else TERNARY
 
     def global_value(self, value: ir.Global) -> str:
         return value.name
@@ -480,22 +480,6 @@ class Printer:
     def print_entry(self, name: str) -> list[Line]:
         """The entry function of the stage, where that is not the author's own."""
         return []
-
-
-def _is_postfix(text: str) -> bool:
-    """Whether a text is a name with members, or a call, so that a member or an index can be added."""
-    name, _, rest = text.partition("(")
-    return name.replace(".", "").isidentifier() and (not rest or _closes(rest))
-
-
-def _closes(text: str) -> bool:
-    """Whether only the last character closes the parenthesis that is open before the text."""
-    depth = 1
-    for index, char in enumerate(text):
-        depth += (char == "(") - (char == ")")
-        if depth == 0:
-            return index == len(text) - 1
-    return False
 
 
 def _channel(arg: ir.Expr) -> str:
