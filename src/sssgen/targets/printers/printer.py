@@ -315,11 +315,12 @@ class Printer:
         """An operation on shared memory, by its row's text for this language."""
         pattern = self.memory_text(stmt)
         result = self.expr(stmt.result) if stmt.result is not None else ""
-        into, also = (f"{result} = ", f", {result}") if result else ("", "")
-        type_ = self.type(stmt.result.type) if stmt.result is not None else ""
-        free = self.free_name("extent" if MEMORY[stmt.name].image else "swapped") if "{free}" in pattern else ""
+        into, also, first = (f"{result} = ", f", {result}", ".x") if result else ("", "", "")
+        typed = stmt.result if stmt.result is not None or not stmt.args else stmt.args[-1]
+        type_ = self.type(typed.type) if typed is not None and "{type}" in pattern else ""
+        free = self.free_name("extent" if stmt.name == "imageSize" else "swapped") if "{free}" in pattern else ""
         args = [*map(self.place, stmt.args[:1]), *map(self.expr, stmt.args[1:])]
-        text = pattern.format(*args, result=result, into=into, also=also, free=free, type=type_)
+        text = pattern.format(*args, result=result, into=into, also=also, first=first, free=free, type=type_)
         return text if text.endswith("}") else f"{text};"
 
     def memory_text(self, stmt: ir.MemoryOperation) -> str:
