@@ -58,3 +58,14 @@ float bright(float x) { return look(x).x; }
     module = load_glsl_text(text, "a.glsl").module
     reasons = [bool(each.reason) for each in probe_functions(module, list(module.functions), text)]
     assert reasons == [True, False, True]
+
+
+def test_four_gathers_in_one(machines: Machines) -> None:
+    """The driver has textureGatherOffsets itself."""
+    text = """#version 450
+    uniform sampler2D map;
+    const ivec2 corners[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 2));
+    vec4 gathered(vec2 p) { return textureGatherOffsets(map, p * 2.0, corners, 2); }
+    """
+    results = rows(machines, text)
+    assert all(row.ok and row.lanes for row in results.values()), results
