@@ -115,6 +115,8 @@ def cases(lanes: int) -> tuple[Case, ...]:
     all_cases = []
     for row in BUILTINS.values():
         for params, (result, _) in signatures.overloads(row.name).items():
+            if params and isinstance(params[0], Sampler) and params[0].dim == "2DMS":
+                continue  # no back end is given a texture with samples
             if row.kind == "derivative":
                 args = over_the_image(row, params)
             elif row.kind == "fetch":

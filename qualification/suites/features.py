@@ -48,8 +48,8 @@ FEATURES = (
         r"#\s*include\b[^\n]*hlsl|\[\[spv|\bspirv_|\bSamplerState\b|\bcbuffer\b|\bfloat4\b", "text of another language"
     ),
     _feature(
-        r"\b[ui]?(?:sampler|texture|image)(?:1DArray\w*|2DRect\w*|Buffer|2DMSArray|CubeArrayShadow|1DShadow|1DArrayShadow)\b"
-        r"|\b[ui]?image(?:Cube\w*|2DMS)\b",
+        r"\b[ui]?(?:sampler|texture|image)(?:2DRect\w*|Buffer|2DMSArray|CubeArrayShadow)\b"
+        r"|\b[ui]?image(?:1DArray|Cube\w*|2DMS)\b",
         "textures that WebGPU lacks",
     ),
     _feature(r"\batomic_uint\b", "counters apart from memory"),

@@ -19,7 +19,7 @@ PLACES: dict[str, tuple[Type, Type, Type]] = {
 
 def arguments(old: str, new: str, count: int) -> list[Type]:
     """The types with which an old name was called."""
-    dim = next(dim for dim in PLACES if dim in old)
+    dim = next(dim for dim in PLACES if dim in old.replace("1D", "2D"))  # a texture of one row
     coord, texel, slope = PLACES[dim]
     shadow = old.startswith("shadow")
     sampler = Sampler(dim.removesuffix("Array"), array=dim.endswith("Array"), shadow=shadow)

@@ -90,8 +90,8 @@ def test_what_has_no_storage_buffers() -> None:
     with pytest.raises(SssgenError, match="a shader with memory takes no guards"):
         transpile(load(BUFFERS, "buffers.frag"), "wgsl", "shader", "all")
     vertex = load("#version 450\nvoid main() { gl_Position = vec4(0.0); }\n", "a.vert")
-    with pytest.raises(SssgenError, match="translated one by one"):
-        transpile_stages(Source(vertex), Source(load(BUFFERS, "buffers.frag")), "wgsl", "program")
+    with pytest.raises(SssgenError, match="a shader with memory takes no guards"):
+        transpile_stages(Source(vertex), Source(load(BUFFERS, "buffers.frag")), "wgsl", "program", "all")
 
 
 def test_separate_textures_are_one_with_their_samplers() -> None:

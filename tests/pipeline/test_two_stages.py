@@ -408,17 +408,3 @@ def test_precisions_of_a_uniform_agree_in_es() -> None:
     translate(vertex, fragment.replace("PRECISION", "highp"))
     with pytest.raises(SssgenError, match=r"'lamp' is highp in a\.vert:3:14, but mediump here"):
         translate(vertex, fragment.replace("PRECISION", "mediump"))
-
-
-@pytest.mark.parametrize(
-    ("declaration", "message"),
-    [
-        ("layout(std430) buffer Numbers { float numbers[]; };", "'numbers_buffer' is a storage buffer"),
-        ("layout(r32f) uniform image2D picture;", "'picture' is an image"),
-    ],
-)
-def test_stages_with_memory_are_translated_one_by_one(declaration: str, message: str) -> None:
-    vertex = "#version 450\nvoid main() { gl_Position = vec4(0.0); }"
-    fragment = f"#version 450\n{declaration}\nout vec4 color;\nvoid main() {{ color = vec4(1.0); }}"
-    with pytest.raises(SssgenError, match=message):
-        translate(vertex, fragment)

@@ -146,6 +146,34 @@ def test_what_a_target_lacks_is_an_error(target: str, text: str, message: str) -
     assert caught.value.diagnostics[0].span is not None
 
 
+ATOMICS = """#version 430
+layout(local_size_x = 4) in;
+layout(r32ui) uniform uimage2D counts;
+layout(r32i) uniform iimage3D volume;
+layout(r32i) uniform iimage2DArray layers;
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    imageAtomicAdd(counts, at, 1u);
+    int old = imageAtomicMin(volume, ivec3(at, 0), -1) + imageAtomicMax(layers, ivec3(at, 1), 2);
+    old += imageAtomicAnd(volume, ivec3(at, 0), 3) + imageAtomicOr(layers, ivec3(at, 1), 4);
+    uint swapped = imageAtomicCompSwap(counts, at, 0u, uint(old)) ^ imageAtomicExchange(counts, at, 5u);
+    imageAtomicXor(counts, at, swapped);
+    imageAtomicCompSwap(layers, ivec3(at, 1), 1, old);
+}
+"""
+
+
+@pytest.mark.parametrize("target", ["metal", "hlsl", "glsl-330"])
+def test_atomics_of_images_compile(target: str) -> None:
+    files = transpile(load_glsl_text(ATOMICS, "atomics.comp").module, target, "atomics").files
+    assert complaint(files) == ""
+    if target == "metal":
+        text = next(iter(files.values()))
+        assert "counts.atomic_fetch_add(uint2(at), uint4(1u));" in text
+        assert "old_7 = counts.atomic_exchange(uint2(at), uint4(5u)).x;" in text
+        assert "while (!counts.atomic_compare_exchange_weak(uint2(at), &swapped_2, uint4(uint(old_3)))" in text
+
+
 def test_hlsl_and_metal_compile() -> None:
     for target in ("hlsl", "metal"):
         assert complaint(transpile(load_glsl(TESTS / "transpile" / "images.comp").module, target, "images").files) == ""

@@ -185,6 +185,55 @@ def test_a_buffer_of_webgl(folder: Path, tmp_path: Path) -> None:
     assert short == {"error": "Scene: 32 bytes, but its members need 264"}
 
 
+def test_storage_buffers_and_images(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.vert").write_text(
+        "#version 450\nlayout(std430) buffer Places { vec4 places[]; };\n"
+        "void main() { gl_Position = places[gl_VertexID]; }\n",
+        encoding="utf-8",
+    )
+    (tmp_path / "a.frag").write_text(
+        "#version 450\nlayout(std430) buffer Count { uint count; };\n"
+        "layout(rgba8) uniform image2D picture;\nout vec4 color;\n"
+        "void main() { atomicAdd(count, 1u); imageStore(picture, ivec2(0), vec4(1.0)); color = vec4(1.0); }\n",
+        encoding="utf-8",
+    )
+    stages = [str(tmp_path / f"a.{suffix}") for suffix in ("vert", "frag")]
+    assert cli.main(["transpile", "--stages", *stages, "-t", "wgsl", "-o", str(tmp_path)]) == 0
+    (tmp_path / "webgl_program.js").rename(tmp_path / "webgl_program.mjs")
+    wrong = answer(tmp_path, "return draw({})")
+    assert wrong == {"error": "a: 'places_buffer' has no value: call setBuffer or setImage"}
+    commands = """
+        const store = () => device.createBuffer({ size: 64, usage: GPUBufferUsage.STORAGE });
+        const usage = GPUTextureUsage.STORAGE_BINDING;
+        const image = device.createTexture({ size: [8, 8], format: 'rgba8unorm', usage });
+        const set = ['Places', 'Count'].map((name) => values.setBuffer(name, store()));
+        set.push(values.setImage('picture', image));
+        draw({});
+        return [...set, values.setBuffer('gone', store()), values.setImage('gone', image)]"""
+    assert answer(tmp_path, commands) == [True, True, True, False, False]
+
+
+def test_a_texture_with_several_samples(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.vert").write_text("#version 450\nvoid main() { gl_Position = vec4(0.0); }\n", encoding="utf-8")
+    (tmp_path / "a.frag").write_text(
+        "#version 450\nuniform sampler2DMS scene;\nout vec4 color;\n"
+        "void main() { color = texelFetch(scene, textureSize(scene) / 2, 3); }\n",
+        encoding="utf-8",
+    )
+    stages = [str(tmp_path / f"a.{suffix}") for suffix in ("vert", "frag")]
+    assert cli.main(["transpile", "--stages", *stages, "-t", "wgsl", "-o", str(tmp_path)]) == 0
+    (tmp_path / "webgl_program.js").rename(tmp_path / "webgl_program.mjs")
+    commands = """
+        const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.TEXTURE_BINDING;
+        const scene = device.createTexture({ size: [8, 8], format: 'rgba8unorm', sampleCount: 4, usage });
+        values.setTexture('scene', scene);
+        draw({});
+        return true"""
+    assert answer(tmp_path, commands) is True
+    wrong = answer(tmp_path, "return draw({})")
+    assert wrong == {"error": "a: 'scene' has no value: call setTexture with a texture of several samples"}
+
+
 def test_what_was_not_set(folder: Path) -> None:
     names = answer(folder, "values.set('turns[1]', [1, 2, 3, 4, 5, 6, 7, 8, 9]); return values.missing()")
     assert "turns" not in names

@@ -489,7 +489,33 @@ return texture_levels({name});
 """
 
 
-for name in SAMPLERS:
+SAMPLED = ("samples", "intsamples", "uintsamples")
+"""The textures with several samples, which have no levels."""
+
+
+def sample_sizes(name: str) -> str:
+    return f"""
+int2 texture_size({load("hlsl").types[SAMPLERS[name]]} map) {{
+    uint width, height, samples;
+    map.GetDimensions(width, height, samples);
+    return int2(width, height);
+}}
+
+return texture_size({name});
+"""
+
+
+for name in SAMPLED:
+    lacking = {
+        "glsl-es": f"error: GLSL ES 3.00 (WebGL 2, OpenGL ES 3.0) has no {SAMPLERS[name]}",
+        "urp": f"error: Unity, Universal Render Pipeline has no {SAMPLERS[name]}",
+    }
+    read, size = f"texelFetch({name}, i2, j)", f"textureSize({name})"
+    CASES[read] = {"glsl": read, "hlsl": f"{name}.Load(i2, j)", "wgsl": f"textureLoad({name}, i2, j)"}
+    CASES[size] = {"glsl": size, "hlsl": sample_sizes(name), "wgsl": f"vec2i(textureDimensions({name}))"}
+    CASES[read] |= {**lacking, **refusals("texelFetch", "dx9")}
+    CASES[size] |= {**lacking, **refusals("textureSize", "dx9")}
+for name in [each for each in SAMPLERS if each not in SAMPLED]:
     size = "vec3i" if name.endswith(("volume", "layers", "cubes", "shades")) else "vec2i"
     read = f"{size}(textureDimensions({name}, i))"
     if name.endswith(("layers", "cubes", "shades")):

@@ -42,7 +42,8 @@ SAMPLERS = {
     "cubes": "samplerCubeArray", "shade": "sampler2DShadow", "shadecube": "samplerCubeShadow",
     "shades": "sampler2DArrayShadow", "ints": "isampler2D", "intvolume": "isampler3D", "intcube": "isamplerCube",
     "intlayers": "isampler2DArray", "uints": "usampler2D", "uintvolume": "usampler3D", "uintcube": "usamplerCube",
-    "uintlayers": "usampler2DArray",
+    "uintlayers": "usampler2DArray", "samples": "sampler2DMS", "intsamples": "isampler2DMS",
+    "uintsamples": "usampler2DMS",
 }  # fmt: skip
 _VARIABLE = re.compile(rf"(?<![.\w])(?:[xyztijkuvwpq][234]?|[mn][234]|{'|'.join(SAMPLERS)})(?![\w(])")
 

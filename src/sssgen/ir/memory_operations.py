@@ -2,8 +2,8 @@
 
 They are statements (`nodes.MemoryOperation`), as they write memory or wait; the table of builtins has functions of
 values alone. A text has `{0}` for the place, `{1}` and `{2}` for the values, and `{result}` for the variable that takes
-the old value. Where it may be left out, `{into}` is `RESULT = ` and `{also}` is `, RESULT`, or nothing. `{free}` is a
-name that the function does not have.
+the old value. Where it may be left out, `{into}` is `RESULT = `, `{also}` is `, RESULT` and `{first}` is `.x`, or
+nothing. `{free}` is a name that the function does not have, `{type}` the type of the result, or of the last value.
 """
 
 from __future__ import annotations
@@ -71,10 +71,21 @@ def _atomic(
     return MemoryRow(name, doc, values, needs_result=needs_result, texts={**texts, **other})
 
 
-def _image_atomic(name: str, hlsl: str, values: int = 1) -> MemoryRow:
+_METAL_PLACES = {"metal": "uint2({1})", "metal-3D": "uint3({1})", "metal-2DArray": "uint2({1}.xy), uint({1}.z)"}
+
+
+def _image_atomic(name: str, hlsl: str, metal_name: str, values: int = 1) -> MemoryRow:
     args = ", ".join([f"{{{index}}}" for index in range(1, values + 2)])
     new = ", ".join([f"{{{index}}}" for index in range(2, values + 2)])
     texts = {"glsl": f"{{into}}image{name}({{0}}, {args})", "hlsl": f"{hlsl}({{0}}[{{1}}], {new}{{also}})"}
+    for key, place in _METAL_PLACES.items():  # Metal 3.1; all four numbers of a texel, of which the first counts
+        texts[key] = f"{{into}}{{0}}.{metal_name}({place}, {{type}}4({{2}})){{first}}"
+        if values > 1:
+            texts[key] = (
+                f"{{type}}4 {{free}} = {{type}}4({{2}});\n"
+                f"while (!{{0}}.{metal_name}({place}, &{{free}}, {{type}}4({{3}})) && {{free}}.x == {{2}}) {{{{\n}}}}\n"
+                "{result} = {free}.x"
+            )
     doc = f"As {name[0].lower()}{name[1:]}, of a texel; gives the old value."
     needs_result = name in ("AtomicExchange", "AtomicCompSwap")
     return MemoryRow(f"image{name}", doc, values + 1, image=True, needs_result=needs_result, texts=texts)
@@ -165,14 +176,14 @@ ROWS = (
             "metal-2DArray": "{result} = {type}({0}.get_width(), {0}.get_height(), {0}.get_array_size())",
         },
     ),
-    _image_atomic("AtomicAdd", "InterlockedAdd"),
-    _image_atomic("AtomicMin", "InterlockedMin"),
-    _image_atomic("AtomicMax", "InterlockedMax"),
-    _image_atomic("AtomicAnd", "InterlockedAnd"),
-    _image_atomic("AtomicOr", "InterlockedOr"),
-    _image_atomic("AtomicXor", "InterlockedXor"),
-    _image_atomic("AtomicExchange", "InterlockedExchange"),
-    _image_atomic("AtomicCompSwap", "InterlockedCompareExchange", 2),
+    _image_atomic("AtomicAdd", "InterlockedAdd", "atomic_fetch_add"),
+    _image_atomic("AtomicMin", "InterlockedMin", "atomic_fetch_min"),
+    _image_atomic("AtomicMax", "InterlockedMax", "atomic_fetch_max"),
+    _image_atomic("AtomicAnd", "InterlockedAnd", "atomic_fetch_and"),
+    _image_atomic("AtomicOr", "InterlockedOr", "atomic_fetch_or"),
+    _image_atomic("AtomicXor", "InterlockedXor", "atomic_fetch_xor"),
+    _image_atomic("AtomicExchange", "InterlockedExchange", "atomic_exchange"),
+    _image_atomic("AtomicCompSwap", "InterlockedCompareExchange", "atomic_compare_exchange_weak", 2),
     MemoryRow(
         "arrayLength", "How many elements a buffer's last member has.", reads_only=True,
         texts={"glsl": "{into}{0}.length()", "wgsl": "{into}i32(arrayLength(&{0}))"},

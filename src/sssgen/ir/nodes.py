@@ -264,6 +264,10 @@ class Function(NamedTuple):
     def key(self) -> str:
         return function_key(self.name, [param.type for param in self.params])
 
+    def begun_with(self, stmts: Block) -> Function:
+        """The function with these statements first."""
+        return self._replace(body=(*stmts, *(self.body or ())))
+
 
 class Uniform(NamedTuple):
     """A value or texture set from outside. `default` holds its components, empty for a texture.
@@ -313,7 +317,8 @@ class Variable(NamedTuple):
     `value` of constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''.
     `interpolation` is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer or image its
     binding. `access` is that of these: readonly, writeonly or ''; `layout` is std430 or std140, of an image its format,
-    or ''. `block` is the block of inputs or outputs that declares it, or ''.
+    or ''. `block` is the block of inputs or outputs that declares it, or ''. `order` is the number of a buffer or
+    image among those of both stages of a program, -1 in a stage alone.
     """
 
     name: str
@@ -328,6 +333,7 @@ class Variable(NamedTuple):
     access: str = ""
     layout: str = ""
     block: str = ""
+    order: int = -1
 
 
 class StructDecl(NamedTuple):

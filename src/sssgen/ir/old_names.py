@@ -14,21 +14,23 @@ GL_EXT_gpu_shader4, GL_EXT_shadow_samplers.
 from __future__ import annotations
 
 _RENAMED = (
-    ("texture2D texture3D textureCube texture2DArray", "texture", (2, 3)),
+    ("texture1D texture2D texture3D textureCube texture1DArray texture2DArray", "texture", (2, 3)),
     (
-        "texture2DLod texture3DLod textureCubeLod texture2DArrayLod texture2DLodEXT texture3DLodEXT textureCubeLodEXT",
+        "texture1DLod texture2DLod texture3DLod textureCubeLod texture1DArrayLod texture2DArrayLod texture2DLodEXT "
+        "texture3DLodEXT textureCubeLodEXT",
         "textureLod",
         (3,),
     ),
     (
-        "texture2DGrad texture3DGrad textureCubeGrad texture2DArrayGrad texture2DGradARB texture3DGradARB "
-        "textureCubeGradARB texture2DGradEXT texture3DGradEXT textureCubeGradEXT",
+        "texture1DGrad texture2DGrad texture3DGrad textureCubeGrad texture2DArrayGrad "
+        "texture1DGradARB texture2DGradARB texture3DGradARB textureCubeGradARB "
+        "texture2DGradEXT texture3DGradEXT textureCubeGradEXT",
         "textureGrad",
         (4,),
     ),
-    ("texture2DProj texture3DProj", "textureProj", (2, 3)),
+    ("texture1DProj texture2DProj texture3DProj", "textureProj", (2, 3)),
     (
-        "texture2DProjLod texture3DProjLod texture2DProjLodEXT texture3DProjLodEXT",
+        "texture1DProjLod texture2DProjLod texture3DProjLod texture2DProjLodEXT texture3DProjLodEXT",
         "textureProjLod",
         (3,),
     ),
@@ -38,10 +40,14 @@ _RENAMED = (
         "textureProjGrad",
         (4,),
     ),
-    ("texelFetch2D texelFetch3D texelFetch2DArray", "texelFetch", (3,)),
+    ("texelFetch1D texelFetch2D texelFetch3D texelFetch1DArray texelFetch2DArray", "texelFetch", (3,)),
     ("shadow2DEXT", "texture", (2,)),
     ("shadow2DProjEXT", "textureProj", (2,)),
-    ("textureSize2D textureSize3D textureSizeCube textureSize2DArray", "textureSize", (2,)),
+    (
+        "textureSize1D textureSize2D textureSize3D textureSizeCube textureSize1DArray textureSize2DArray",
+        "textureSize",
+        (2,),
+    ),
 )
 """Old names, the new name, the possible numbers of arguments."""
 

@@ -26,4 +26,6 @@ def kept_components(texture: Type, coordinate: Type) -> int | None:
         return None
     if texture.shadow or texture.dim == "3D":
         return 3 if coordinate.size == 4 else None
+    if texture.line:
+        return 1 if coordinate.size in (2, 4) else None
     return 2 if coordinate.size in (3, 4) else None

@@ -170,7 +170,7 @@ def is_type(type: Type, ends_buffer: bool = False) -> bool:
             for field in type.fields
         )
     if isinstance(type, Sampler):
-        return type.dim in ("2D", "3D", "Cube")
+        return type.dim in ("2D", "3D", "Cube", "2DMS")
     return isinstance(type, Void)
 
 

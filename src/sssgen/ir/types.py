@@ -54,14 +54,16 @@ class Struct(NamedTuple):
 class Sampler(NamedTuple):
     """A texture together with its sampler.
 
-    `dim` is 2D, 3D or Cube, `kind` that of its texels: float, int or uint; `array` says that it has layers, `shadow`
-    that a read compares.
+    `dim` is 2D, 3D, Cube or 2DMS (several samples to a texel), `kind` that of its texels: float, int or uint; `array`
+    says that it has layers, `shadow` that a read compares. `line`: the source has one dimension; after the check it is
+    a texture of two with one row.
     """
 
     dim: str
     kind: str = "float"
     array: bool = False
     shadow: bool = False
+    line: bool = False
 
 
 class Image(NamedTuple):
@@ -97,8 +99,9 @@ for _dim in ("2D", "Cube"):
     BY_NAME[f"sampler{_dim}Array"] = Sampler(_dim, array=True)
     BY_NAME[f"sampler{_dim}Shadow"] = Sampler(_dim, shadow=True)
 BY_NAME["sampler2DArrayShadow"] = Sampler("2D", array=True, shadow=True)
+BY_NAME["sampler2DMS"] = Sampler("2DMS")
 for _kind, _prefix in (("int", "i"), ("uint", "u")):
-    for _dim in ("2D", "3D", "Cube"):
+    for _dim in ("2D", "3D", "Cube", "2DMS"):
         BY_NAME[f"{_prefix}sampler{_dim}"] = Sampler(_dim, _kind)
     BY_NAME[f"{_prefix}sampler2DArray"] = Sampler("2D", _kind, array=True)
 
@@ -109,8 +112,16 @@ IMAGES: dict[str, Image] = {
 }
 """The names of images, which are variables of whole shaders alone."""
 
+LINES: dict[str, Sampler] = {
+    f"{prefix}sampler1D{'Array' if array else ''}{'Shadow' if shadow else ''}": Sampler("2D", kind, array, shadow, True)
+    for prefix, kind in (("", "float"), ("i", "int"), ("u", "uint"))
+    for array in (False, True)
+    for shadow in ((False, True) if kind == "float" else (False,))
+}
+"""The names of textures of one dimension, which plain GLSL alone has."""
+
 _NAMES: dict[Type, str] = {}
-for _name, _type in (*BY_NAME.items(), *IMAGES.items()):
+for _name, _type in (*BY_NAME.items(), *IMAGES.items(), *LINES.items()):
     _NAMES.setdefault(_type, _name)
 
 VEC2, VEC3, VEC4 = Vector("float", 2), Vector("float", 3), Vector("float", 4)

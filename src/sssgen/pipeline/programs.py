@@ -71,13 +71,18 @@ def make_library(
     form = kind if kind in target.files else "functions"
     if module.workgroup:
         _check_compute(target, form)
-    if (module.workgroup or has_buffers(module)) and guards != "none":
-        raise failure("a shader with memory takes no guards: other invocations write it, too", "write --guards none")
+    check_guards(module, guards)
     state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
     return target_program(state, trace)
+
+
+def check_guards(module: Module, guards: str) -> None:
+    """Raises SssgenError where a shader with memory is to have guards."""
+    if (module.workgroup or has_buffers(module)) and guards != "none":
+        raise failure("a shader with memory takes no guards: other invocations write it, too", "write --guards none")
 
 
 def _check_compute(target: Target, form: str) -> None:
@@ -190,7 +195,7 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     surface_reads = {kind: _members_read(function, surface) for kind, (function, _) in entries.items()}
     later_glsl = any(BUILTINS[name].later_glsl for name in builtins_of(module) if name in BUILTINS)
-    later_glsl = later_glsl or any(variable.builtin == "gl_SampleMaskIn" for variable in module.variables)
+    later_glsl = later_glsl or any(variable.builtin in target.later_builtins for variable in module.variables)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
         Diagnostic("warning", note.message, note.span, note.hint, source_line(note.span)) for note in state.notes

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Module
 from sssgen.lang.source_lines import source_line
 from sssgen.passes.reachable import drop_unused, keep_reachable
+from sssgen.passes.stage.linked_memory import unlike_memory, with_shared_memory, without_unused_memory
 from sssgen.passes.stage.linked_stages import (
     disagreements,
     link_program,
@@ -20,9 +21,10 @@ from sssgen.passes.stage.linked_stages import (
     with_shared_uniforms,
 )
 from sssgen.passes.stage.stage_interface import ENTRY, stage_kind
+from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.compiler import emit_program
-from sssgen.pipeline.programs import check_partner, target_program
+from sssgen.pipeline.programs import check_guards, check_partner, target_program
 from sssgen.pipeline.state import State
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import pause_gc
@@ -69,24 +71,17 @@ def transpile_stages(
         able = [name for name in registry.names() if "vertex" in registry.load(name).files]
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
     for source in sources.values():
-        if memory := next((each for each in source.module.variables if each.storage in ("buffer", "image")), None):
-            what = "a storage buffer" if memory.storage == "buffer" else "an image"
-            raise failure(
-                f"'{memory.name}' is {what}: stages that have these are translated one by one",
-                "sssgen transpile FILE --with OTHER",
-                source.module.functions[-1].span.file,
-            )
+        check_guards(source.module, guards)
     with pause_gc():
         blocks = {kind: block_members(source.module) for kind, source in sources.items()}
         modules = {kind: drop_unused(keep_reachable(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])
-        for unlike in (unlike_blocks, unlike_orders, unlike_locations):
+        for unlike in (unlike_blocks, unlike_orders, unlike_locations, unlike_memory):
             wrong += unlike(sources["vertex"].module, sources["fragment"].module)
         if wrong:
-            raise SssgenError(
-                [Diagnostic("error", each.message, each.span, each.hint, source_line(each.span)) for each in wrong]
-            )
+            raise SssgenError([_error(each.message, each) for each in wrong])
         modules["vertex"], modules["fragment"] = link_program(modules["vertex"], modules["fragment"])
+        modules = _with_shared_memory(modules, chosen)
         if not chosen.capabilities.varying_locations:
             modules["vertex"], modules["fragment"] = with_common_names(modules["vertex"], modules["fragment"])
         states = _states(modules, guards, chosen, rows)
@@ -128,6 +123,20 @@ def transpile_stages(
     warnings += [Diagnostic("warning", message) for message in beyond]
     files[f"{name}.program.json"] = as_text(described)
     return TranslatedProgram(files, list(dict.fromkeys(warnings)), (renames[kinds[0]], renames[kinds[1]]))
+
+
+def _with_shared_memory(modules: Mapping[str, Module], target: Target) -> dict[str, Module]:
+    """The stages with the storage buffers and images that they use, alike in both. Raises SssgenError."""
+    vertex, fragment = [without_unused_memory(modules[kind]) for kind in ("vertex", "fragment")]
+    try:
+        vertex, fragment = with_shared_memory(vertex, fragment, target.capabilities)
+    except Unsupported as error:
+        raise SssgenError([_error(f"{error.message} ({target.name})", error)]) from None
+    return {"vertex": vertex, "fragment": fragment}
+
+
+def _error(message: str, error: Unsupported) -> Diagnostic:
+    return Diagnostic("error", message, error.span, error.hint, source_line(error.span))
 
 
 def _states(modules: Mapping[str, Module], guards: str, target: Target, rows: str) -> dict[str, State]:

@@ -292,6 +292,8 @@ class Target(NamedTuple):
     """Those of these forms whose shell declares the uniforms all the same, and passes them."""
     version: str = ""
     """GLSL: the `#version` line."""
+    later_builtins: tuple[str, ...] = ()
+    """GLSL: the variables that a version needs which whole shaders have for memory, too."""
     precision: str = ""
     """GLSL: the precision statements."""
     constants: bool = False

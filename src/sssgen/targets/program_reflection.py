@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence, Set
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
 from sssgen.passes.stage.stage_interface import Slot, interpolation
 from sssgen.passes.stage.uniform_structs import members
+from sssgen.support.diagnostics import failure
 from sssgen.targets.assemble import Program
 from sssgen.targets.block_places import Member, place_in_block
 from sssgen.targets.descriptor import Target
 from sssgen.targets.reflection_record import (
     AttributeRecord,
+    BufferRecord,
+    ImageRecord,
+    MemoryUse,
     OutputRecord,
+    ProgramMemory,
     ProgramPlace,
     ProgramReflection,
     ProgramTexture,
@@ -34,6 +39,8 @@ VERSION = 1
 
 ROWS = ("bottom-first", "top-first")
 """Where the first row of a picture is: at the bottom, as in OpenGL and WebGL, or at the top, as in WebGPU and D3D."""
+
+_Record = TypeVar("_Record", BufferRecord, ImageRecord)
 
 _ARRAY = re.compile(r"\[(\d+)\]")
 
@@ -75,9 +82,41 @@ def reflect_program(
         "uniform_block": block,
         "uniforms": uniforms,
         "textures": textures,
+        **_memory(stages),
         "renames": {kind: facts.reflection["renames"] for kind, facts in stages.items()},
         "warnings": list(dict.fromkeys(text for facts in stages.values() for text in facts.reflection["warnings"])),
     }
+
+
+def _memory(stages: Mapping[str, StageFacts]) -> ProgramMemory:
+    """The storage buffers and images of the program. Raises SssgenError where the stages bind one differently."""
+    reflections = {kind: facts.reflection for kind, facts in stages.items()}
+    buffers = {kind: reflection.get("storage_buffers", []) for kind, reflection in reflections.items()}
+    images = {kind: reflection.get("storage_images", []) for kind, reflection in reflections.items()}
+    memory: ProgramMemory = {}
+    if any(buffers.values()):
+        memory["storage_buffers"] = [{**record, **use} for record, use in _joined(stages, "buffer", buffers)]
+    if any(images.values()):
+        memory["storage_images"] = [{**record, **use} for record, use in _joined(stages, "image", images)]
+    return memory
+
+
+def _joined(
+    stages: Mapping[str, StageFacts], storage: str, records: Mapping[str, Sequence[_Record]]
+) -> list[tuple[_Record, MemoryUse]]:
+    """Each buffer, or each image, of the program: its record in a stage, its name in the source, and its stages."""
+    joined: dict[int, tuple[_Record, MemoryUse]] = {}
+    for kind, facts in stages.items():
+        declared = [variable for variable in facts.program.module.variables if variable.storage == storage]
+        for variable, record in zip(declared, records[kind], strict=True):
+            name = facts.names.get(variable.name, variable.name)
+            first, use = joined.setdefault(variable.order, (record, {"name": name, "stages": []}))
+            use["stages"].append(kind)
+            if first["binding"] != record["binding"]:
+                places = [each["binding"]["binding"] for each in (first, record)]
+                message = f"'{name}' has the binding {places[0]} in one stage, and {places[1]} in the other"
+                raise failure(message, "write another binding for it in both stages")
+    return [joined[order] for order in sorted(joined)]
 
 
 def exceeded_limits(program: ProgramReflection, target: Target) -> list[str]:
@@ -214,7 +253,7 @@ def _texture(
 ) -> ProgramTexture:
     type_ = uniform.type
     assert isinstance(type_, Sampler)
-    dimension = type_.dim.lower() + ("-array" if type_.array else "")
+    dimension = type_.dim.removesuffix("MS").lower() + ("-array" if type_.array else "")
     sample = "depth" if type_.shadow else {"int": "sint", "uint": "uint"}.get(type_.kind, "float")
     sampler = "comparison" if type_.shadow else "filtering" if sample == "float" and sampled else "non-filtering"
     return {
@@ -224,5 +263,6 @@ def _texture(
         "sample_type": sample,
         "filterable": sampled and sample == "float",
         "sampler": sampler if sampled or passed else "",
+        "multisampled": type_.dim == "2DMS",
         "binding": binding,
     }

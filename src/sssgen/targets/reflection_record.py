@@ -408,10 +408,39 @@ class ProgramTexture(TypedDict):
     filterable: bool
     sampler: str
     """filtering, comparison, non-filtering, or '' where it needs none."""
+    multisampled: bool
+    """Whether a texel has several samples."""
     binding: TextureBinding | None
 
 
-class ProgramReflection(TypedDict):
+class MemoryUse(TypedDict):
+    """Who uses a storage buffer or an image of a program."""
+
+    name: str
+    """In the source."""
+    stages: list[str]
+
+
+class ProgramBuffer(BufferRecord):
+    """A storage buffer of a program."""
+
+    stages: list[str]
+
+
+class ProgramImage(ImageRecord):
+    """An image of a program."""
+
+    stages: list[str]
+
+
+class ProgramMemory(TypedDict, total=False):
+    """The storage buffers and images of a program; absent where it has none."""
+
+    storage_buffers: list[ProgramBuffer]
+    storage_images: list[ProgramImage]
+
+
+class ProgramReflection(ProgramMemory):
     """What a renderer needs to draw with a program of two stages."""
 
     format: int

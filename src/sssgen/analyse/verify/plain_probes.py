@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell, with_article
+from sssgen.ir.walk import all_expressions
+from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.variable_effects import NONE, effects
 
 MAX_INPUTS = 256
@@ -77,8 +79,17 @@ def probe_functions(module: Module, functions: list[Function], text: str) -> lis
             reason = "it reads or writes storage buffers or images, which functions are not verified with"
             probes.append(FunctionProbes(function, reason=reason))
             continue
+        if "sampler1D" in text and _reads_textures(module, function):
+            reason = "it reads a texture, and the driver gets none of one dimension, which the text declares"
+            probes.append(FunctionProbes(function, reason=reason))
+            continue
         probes.append(_probe_function(function, prefix, f"{prefix}probe_{number}", read, written))
     return probes
+
+
+def _reads_textures(module: Module, function: Function) -> bool:
+    called = keep_reachable(module, [function.key]).functions
+    return any(isinstance(each.type, Sampler) for part in called for each in all_expressions(part.body or ()))
 
 
 def leaves(type_: Type, path: str = "") -> Iterator[tuple[str, Type]]:

@@ -120,6 +120,7 @@ ROWS = (
         (
             *(f"ivec{size}({kind}sampler{dim}, int)" for kind in _KINDS for dim, size in (("2D", 2), ("3D", 3), ("Cube", 2), ("2DArray", 3))),
             "ivec3(samplerCubeArray, int)", "ivec2(sampler2DShadow, int)", "ivec2(samplerCubeShadow, int)", "ivec3(sampler2DArrayShadow, int)",
+            *(f"ivec2({kind}sampler2DMS)" for kind in _KINDS),
         ),
         "Size in texels of level y, and how many layers there are.",
         es=300, size_query=True, componentwise=False, range=all_within(0.0, 65536.0), domain="the level exists",
@@ -130,6 +131,9 @@ ROWS = (
                 f"wgsl-metal/{sampler},int": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})), {texture}.get_array_size())"
                 for sampler in ("sampler2DArray", "isampler2DArray", "usampler2DArray", "samplerCubeArray", "sampler2DArrayShadow")
             },
+            **{f"wgsl-metal/{kind}sampler2DMS": "{type}({texture}.get_width(), {texture}.get_height())" for kind in _KINDS},
+            **{f"hlsl/{kind}sampler2DMS": "texture_size({bare_texture})" for kind in _KINDS},
+            **{f"wgsl/{kind}sampler2DMS": "{type}(textureDimensions({texture}))" for kind in _KINDS},
             "tsl": "", "tsl/sampler2D,int": "{type}({texture}.size({1}))", "tsl/samplerCube,int": "{type}({texture}.size({1}))",
             "hlsl": "texture_size({bare_texture}, {1})", "hlsl-dx9": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
             **{
@@ -368,15 +372,20 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
     ),
     # Texels
     Builtin("texelFetch",
-        tuple(f"{kind}vec4({kind}sampler{place}, int)" for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3")),
-        "The texel at y of level z, unfiltered.",
+        tuple(
+            f"{kind}vec4({kind}sampler{place}, int)"
+            for kind in _KINDS for place in ("2D, ivec2", "3D, ivec3", "2DArray, ivec3", "2DMS, ivec2")
+        ),
+        "The texel at y of level z, unfiltered; of a texture with samples, its sample z.",
         es=300, componentwise=False, range=texels, defined=_exists,
         domain="the texel and the level exist",
         texts={
             "wgsl-metal": "",
-            **{f"wgsl-metal/{kind}sampler2D,ivec2,int": "{texture}.read(uint2({1}), uint({2}))" for kind in _KINDS},
+            **{f"wgsl-metal/{kind}sampler2D{samples},ivec2,int": "{texture}.read(uint2({1}), uint({2}))" for kind in _KINDS for samples in ("", "MS")},
             **{f"wgsl-metal/{kind}sampler3D,ivec3,int": "{texture}.read(uint3({1}), uint({2}))" for kind in _KINDS},
             "tsl": "{texture}.load({1}).level({2})", **{f"tsl/{kind}sampler2DArray,ivec3,int": "" for kind in _KINDS},
+            **{f"tsl/{kind}sampler2DMS,ivec2,int": "" for kind in _KINDS},
+            **{f"hlsl/{kind}sampler2DMS,ivec2,int": "{texture}.Load({1}, {2})" for kind in _KINDS},
             "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
             **{f"hlsl/{kind}sampler{dim},ivec3,int": "{texture}.Load(int4({1}, {2}))" for kind in _KINDS for dim in ("3D", "2DArray")},
             "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",

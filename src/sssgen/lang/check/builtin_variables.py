@@ -84,14 +84,13 @@ that GLSL allows."""
 
 
 _FRAGMENT = {
-    "gl_FragCoord", "gl_FrontFacing", "gl_PointCoord", "gl_SampleID", "gl_FragDepth", "gl_FragDepthEXT", "gl_FragColor",
-    "gl_FragData",
-}  # fmt: skip
+    name for name in BUILTIN_VARIABLES if name.startswith(("gl_Frag", "gl_FrontFacing", "gl_PointCoord", "gl_Sample"))
+}
 """Those that fragment shaders alone have."""
 
 
 _SAMPLES = ("GL_OES_sample_variables", "GL_ANDROID_extension_pack_es31a")
-"""The extensions that have gl_SampleID."""
+"""The extensions that have gl_SampleID and its kin."""
 
 
 def check_stage(context: CheckContext, name: s.Name) -> None:
@@ -99,9 +98,9 @@ def check_stage(context: CheckContext, name: s.Name) -> None:
     text, language = name.text, context.language
     if context.es and language.vertex and text in _FRAGMENT:
         raise context.fail(name.span, f"'{text}' belongs to fragment shaders", "write it in the other stage")
-    if text == "gl_SampleID" and 0 < context.es < 320 and language.extensions.isdisjoint(_SAMPLES):
+    if text.startswith("gl_Sample") and 0 < context.es < 320 and language.extensions.isdisjoint(_SAMPLES):
         hint = "write #version 320 es, or #extension GL_OES_sample_variables : require"
-        raise context.fail(name.span, "gl_SampleID needs GLSL ES 3.20", hint)
+        raise context.fail(name.span, f"{text} needs GLSL ES 3.20", hint)
 
 
 def check_colors(context: CheckContext) -> None:

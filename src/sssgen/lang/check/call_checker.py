@@ -12,7 +12,7 @@ from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.projective_reads import PROJECTIVE_READS, kept_components
 from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import overload, resolve
-from sssgen.ir.types import FLOAT, INT, VOID, Sampler, Type, components, kind_of, spell, vector_of
+from sssgen.ir.types import FLOAT, INT, VOID, Array, Sampler, Scalar, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.assignment_checker import check_writable
@@ -21,6 +21,7 @@ from sssgen.lang.check.constructor_checker import ConstructorChecker
 from sssgen.lang.check.context import AlreadyReported, Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
+from sssgen.lang.check.line_textures import is_line, line_size, plane_arguments
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import Signature
 from sssgen.lang.check.wording import a_type, overload_hint, signature_text
@@ -116,6 +117,8 @@ class CallChecker:
         name = renamed or name
         if name in PROJECTIVE_READS:
             return self.projective_read(name, args, call)
+        if name == "textureGatherOffsets":
+            return self.four_gathers(args, call)
         types = [arg.expr.type for arg in args]
         source = out_builtins.out_builtin(name, types)
         if source is None and out_builtins.is_out_builtin(name):
@@ -141,6 +144,34 @@ class CallChecker:
         last = ir.Swizzle(FLOAT, value, "xyzw"[components(value.type) - 1], span)
         divided = place._replace(expr=ir.Binary(whole.type, "/", whole, last, span))
         return self.call_intrinsic(PROJECTIVE_READS[name], [texture, divided, *rest], call)
+
+    def four_gathers(self, args: list[Typed], call: s.CallOf) -> Typed:
+        """`textureGatherOffsets`: one texel of each of four gathers, each with its own offset."""
+        name, context, span = "textureGatherOffsets", self.context, call.span
+        position = next((index for index, arg in enumerate(args) if arg.expr.type == Array(_OFFSET, 4)), None)
+        if position is None:
+            types = ", ".join([spell(arg.expr.type) for arg in args])
+            raise context.fail(span, f"no overload of {name} takes ({types})", "its offsets are an ivec2[4]")
+        before, offsets, behind = args[:position], args[position], args[position + 1 :]
+        for index, arg in enumerate(before):
+            if not isinstance(arg.expr, ir.Local | ir.Global | ir.Literal):
+                before[index] = arg._replace(expr=context.function.temporary("place", arg.expr))
+        texels: list[ir.Expr] = []
+        for corner in range(4):
+            element = ir.Index(_OFFSET, offsets.expr, ir.Literal(INT, corner, span), offsets.expr.span)
+            offset = offsets._replace(expr=element)
+            gathered = self.call_intrinsic("textureGatherOffset", [*before, offset, *behind], call)
+            texels.append(ir.Swizzle(Scalar(kind_of(gathered.expr.type)), gathered.expr, "w", span))
+        return Typed(ir.Construct(gathered.expr.type, tuple(texels), span))
+
+    def line_read(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
+        """A read of a texture of one dimension, from a texture of one row."""
+        plane = plane_arguments(name, args, self.context.converts)
+        if plane is None:
+            types = [spell(arg.expr.type) for arg in args]
+            raise self.context.fail(call.span, f"no overload of {name} takes ({', '.join(types)})")
+        result = self.call_intrinsic(name, plane, call)
+        return result._replace(expr=line_size(result.expr)) if name == "textureSize" else result
 
     def method(self, callee: s.MemberOf, call: s.CallOf) -> Typed:
         """`values.length()`, the only method."""
@@ -232,6 +263,8 @@ class CallChecker:
 
     def call_intrinsic(self, name: str, args: list[Typed], call: s.CallOf) -> Typed:
         """A call of a builtin."""
+        if is_line(args):
+            return self.line_read(name, args, call)
         values = tuple([arg.expr for arg in args])
         result = resolve(name, [value.type for value in values])
         if result is None and self.context.converts:
@@ -297,6 +330,8 @@ class CallChecker:
                 values = (*values[:index], literal(value.type, numbers, value.span), *values[index + 1 :])
         return values
 
+
+_OFFSET = vector_of("int", 2)
 
 _WITH_BIAS = {"texture": 3, "textureOffset": 4}
 """Read → how many arguments it has with a bias."""

@@ -149,6 +149,9 @@ class CheckContext:
         self.texture_arrays: dict[str, list[str]] = {}
         """For each array of textures, the names of the textures that replace its elements."""
 
+        self.has_lines = False
+        """Whether there are textures of one dimension."""
+
     def find_struct(self, name: str) -> Struct | None:
         """The struct that a name stands for here."""
         return self.function.scopes.find_struct(name) or self.structs.get(name)

@@ -98,6 +98,9 @@ class GlobalChecker:
         )
         context.globals[name.text] = GlobalValue(type_, quantity, extent=of_uniform(uniform)[:2])
         self.uniforms.append(uniform)
+        if isinstance(type_, Sampler) and type_.line:
+            message = f"'{name.text}' becomes {a_type(type_._replace(line=False))}: bind a texture of one row"
+            context.reporter.warn(name.span, message)
 
     def default(self, declarator: s.Declarator, type_: Type) -> tuple[float, ...]:
         """The components of a uniform's default value; () for a texture."""

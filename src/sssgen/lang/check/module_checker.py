@@ -25,6 +25,7 @@ from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.function_checker import FunctionChecker
 from sssgen.lang.check.global_checker import GlobalChecker
 from sssgen.lang.check.implicit_lengths import length_by_use
+from sssgen.lang.check.line_textures import without_lines
 from sssgen.lang.check.loop_checker import LoopChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.operator_checker import OperatorChecker
@@ -130,7 +131,7 @@ class ModuleChecker:
         main = functions.get("main()") if context.language.vertex else None
         if main is not None and "gl_Position" not in context.variables:  # a stage that has it is a vertex shader
             builtin_variable(context, s.Name("gl_Position", main.span))
-        return ir.Module(
+        module = ir.Module(
             tuple(context.struct_declarations),
             tuple(self.globals.constants),
             (*self.globals.uniforms, *context.draw_uniforms),
@@ -138,6 +139,7 @@ class ModuleChecker:
             tuple(context.variables.values()),
             context.workgroup,
         )
+        return without_lines(module, context) if context.has_lines else module
 
     def external(self, external: s.External) -> None:
         """Checks one declaration."""

@@ -168,7 +168,7 @@ class ShaderInterface:
                 "the initial value of a global variable calls a function, and there is no main() that could set it"
             )
             raise self.context.fail(self.starts[0].span, message)
-        return functions | {"main()": main._replace(body=(*self.starts, *(main.body or ())))}
+        return functions | {"main()": main.begun_with(tuple(self.starts))}
 
     def storage(self, keywords: tuple[str, ...]) -> str:
         """private, in or out, from the qualifiers; for a varying also from the stage."""

@@ -6,7 +6,20 @@ import math
 from collections.abc import Sequence
 
 from sssgen.ir.spans import Span
-from sssgen.ir.types import BY_NAME, IMAGES, Array, Matrix, Sampler, Struct, Type, Void, spell, unnested, with_article
+from sssgen.ir.types import (
+    BY_NAME,
+    IMAGES,
+    LINES,
+    Array,
+    Matrix,
+    Sampler,
+    Struct,
+    Type,
+    Void,
+    spell,
+    unnested,
+    with_article,
+)
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
@@ -28,6 +41,9 @@ def named_element(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
     quantity = ""
     if name.name in BY_NAME:
         type_ = BY_NAME[name.name]
+    elif context.plain and name.name in LINES:
+        type_ = LINES[name.name]
+        context.has_lines = True
     elif (struct := context.find_struct(name.name)) is not None:
         type_ = struct
     elif name.name in q.QUANTITIES and not context.plain:

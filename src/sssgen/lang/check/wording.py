@@ -80,7 +80,9 @@ def overload_hint(name: str, args: list[ir.Expr]) -> str:
 _UNSUPPORTED = (
     (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
     (r"[iu]?image\w+", "images are image2D, image3D and image2DArray here, of float, int and uint"),
-    (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU has no such textures"),
+    (r"[iu]?sampler2DRect\w*", "WebGPU has no such textures; write sampler2D, and divide coordinates by textureSize"),
+    (r"[iu]?samplerBuffer", "WebGPU has no such textures; write a readonly storage buffer, or sampler2D"),
+    (r"[iu]?sampler2DMSArray", "WebGPU has no such textures; write a sampler2DMS for each layer"),
     (r"atomic_uint", "atomics belong to compute shaders"),
 )
 

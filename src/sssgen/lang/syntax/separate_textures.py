@@ -14,9 +14,9 @@ from sssgen.ir.spans import Span
 from sssgen.lang.syntax import tree as s
 from sssgen.support.diagnostics import Reporter
 
-_DIMS = ("2D", "3D", "Cube", "2DArray", "CubeArray")
+_DIMS = ("1D", "2D", "3D", "Cube", "1DArray", "2DArray", "CubeArray")
 _JOINED = {f"{kind}texture{dim}": f"{kind}sampler{dim}" for kind in ("", "i", "u") for dim in _DIMS}
-_SHADOWS = {f"sampler{dim}Shadow" for dim in ("2D", "Cube", "2DArray")}
+_SHADOWS = {f"sampler{dim}Shadow" for dim in ("1D", "2D", "Cube", "1DArray", "2DArray")}
 _SAMPLERS = ("sampler", "samplerShadow")
 
 

@@ -1,15 +1,10 @@
-"""Statements that main() executes first, or before each of its ends: they copy what stages pass on."""
+"""Statements that main() executes before each of its ends: they copy what stages pass on."""
 
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import returns
 from sssgen.ir.transform import rewrite_function
-
-
-def copies_first(main: ir.Function, copies: ir.Block) -> ir.Function:
-    """The entry with these statements first."""
-    return main._replace(body=(*copies, *(main.body or ())))
 
 
 def copies_last(main: ir.Function, copies: ir.Block) -> ir.Function:

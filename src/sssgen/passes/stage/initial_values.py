@@ -37,8 +37,7 @@ def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Modul
     variables = [each._replace(value=None) if each.name in names else each for each in module.variables]
     stmts = tuple(map(_assignment, moved))
     functions = [
-        function._replace(body=(*stmts, *(function.body or ()))) if function.key == entry else function
-        for function in module.functions
+        function.begun_with(tuple(stmts)) if function.key == entry else function for function in module.functions
     ]
     return module._replace(variables=tuple(variables), functions=tuple(functions))
 
@@ -97,7 +96,7 @@ def _with_declarations(function: Function, computed: dict[str, Variable]) -> Fun
         for name, variable in computed.items()
         if name in needed and variable.value is not None
     ]
-    return function._replace(body=(*declarations, *(function.body or ())))
+    return function.begun_with(tuple(declarations))
 
 
 def _globals(value: Expr) -> set[str]:

@@ -16,7 +16,7 @@ from sssgen.ir.types import INT, Array, Matrix
 from sssgen.ir.walk import all_expressions, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import claim, names_of
-from sssgen.passes.stage.entry_copies import copies_first, copies_last
+from sssgen.passes.stage.entry_copies import copies_last
 
 
 def interface_arrays(module: ir.Module, kind: str, entry: str, can: Capabilities) -> ir.Module:
@@ -48,7 +48,7 @@ def _with_single_attributes(module: ir.Module, attributes: list[ir.Variable], en
             variables.insert(index + number, single)
             copies.append(_copy(_element(attribute, attribute.name, number), ir.Global(element, name, attribute.span)))
     functions = [
-        copies_first(function, tuple(copies)) if function.key == entry else function for function in module.functions
+        function.begun_with(tuple(copies)) if function.key == entry else function for function in module.functions
     ]
     return module._replace(variables=tuple(variables), functions=tuple(functions))
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import INT, Array, Struct, Type
 from sssgen.passes.scopes import claim, names_of
-from sssgen.passes.stage.entry_copies import copies_first, copies_last
+from sssgen.passes.stage.entry_copies import copies_last
 from sssgen.passes.stage.stage_interface import entry_of, stage_kind
 from sssgen.passes.stage.varyings import parts, varyings
 
@@ -43,7 +43,7 @@ def varying_parts(module: ir.Module) -> ir.Module:
             passed = ir.Global(part.type, part.name, part.span)
             target, value = (passed, place) if kind == "vertex" else (place, passed)
             copies.append(ir.Assign(target, "", value, part.span))
-    add_copies = copies_last if kind == "vertex" else copies_first
+    add_copies = copies_last if kind == "vertex" else ir.Function.begun_with
     functions = [
         add_copies(function, tuple(copies)) if function is entry else function for function in module.functions
     ]

@@ -123,13 +123,20 @@ def contrast(there: Type, here: Type) -> tuple[str, str]:
     """
     if _shape(there) == _shape(here):
         return spell(here), spell(here)
-    words = [with_article(spell(type_)) for type_ in (there, here)]
-    structs = [unnested(type_)[0] for type_ in (there, here)]
-    for index, struct in enumerate(structs):
-        if isinstance(struct, Struct):
-            members = "; ".join([f"{spell(field.type)} {field.name}" for field in struct.fields])
-            words[index] = f"a struct {{ {members}; }}"
-    return words[0], words[1]
+    words = [_with_members(type_, is_deep=False) for type_ in (there, here)]
+    if words[0] == words[1]:  # a struct inside differs
+        words = [_with_members(type_, is_deep=True) for type_ in (there, here)]
+    return with_article(words[0]), with_article(words[1])
+
+
+def _with_members(type_: Type, is_deep: bool) -> str:
+    """A type in words: a struct, or that of an array, is its members; `is_deep`: so are those in it."""
+    struct, _ = unnested(type_)
+    if not isinstance(struct, Struct):
+        return spell(type_)
+    words = [_with_members(field.type, True) if is_deep else spell(field.type) for field in struct.fields]
+    members = "; ".join([f"{word} {field.name}" for word, field in zip(words, struct.fields, strict=True)])
+    return f"struct {{ {members}; }}"
 
 
 def _shape(type_: Type) -> object:

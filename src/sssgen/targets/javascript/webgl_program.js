@@ -5,7 +5,7 @@
 //   const vertices = program.vertices({ position: { buffer, format: 'float32x3', stride: 12 } });
 //   const pipeline = program.pipeline({ vertices, targets: ['rgba8unorm'], depth: { format: 'depth24plus' } });
 //   const values = program.values();   // one for each object that is drawn
-//   values.set('time', 0.5); values.setTexture('map', texture, sampler);
+//   values.set('time', 0.5); values.setTexture('map', texture, sampler); values.setBuffer('Bones', storageBuffer);
 //   pass.setPipeline(pipeline); vertices.bind(pass); values.bind(pass); pass.draw(count);
 //
 // With `rows` "bottom-first" a picture has the rows of WebGL: the first row is its bottom. So gl_FragCoord, dFdy and the
@@ -19,11 +19,13 @@
 /** @typedef {{ uniform: string, type: string, count: number, offset: number, array_stride: number, matrix_stride: number,
  *   block?: BlockPlace & { stride: number } }} Place  Where the numbers of a name are; `uniform` is the whole that it belongs to. */
 /** @typedef {{ name: string, stages: string[], dimension: GPUTextureViewDimension, sample_type: GPUTextureSampleType,
- *   filterable: boolean, sampler: GPUSamplerBindingType | '', binding: { group: number, texture: number, sampler: number } }} Texture */
+ *   filterable: boolean, sampler: GPUSamplerBindingType | '', multisampled: boolean, binding: { group: number, texture: number, sampler: number } }} Texture */
+/** @typedef {{ name: string, stages: string[], access: string, binding: { binding: number } }} Memory */
 /** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
 /** @typedef {{ format: number, program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
  *   attributes: Attribute[], varyings: { name: string, interpolation: string }[], uniform_block: { size: number, group: number, binding: number } | null,
- *   uniforms: Uniform[], textures: Texture[] }} Description */
+ *   uniforms: Uniform[], textures: Texture[], storage_buffers?: (Memory & { block: string })[],
+ *   storage_images?: (Memory & { type: string, format: string })[] }} Description */
 /** @typedef {{ buffer?: GPUBuffer, format?: GPUVertexFormat, stride?: number, offset?: number, perInstance?: boolean,
  *   constant?: number[] }} Source  Where an attribute comes from: a buffer, or one constant for all vertices. */
 /** @typedef {{ format: GPUTextureFormat, test?: boolean, write?: boolean, compare?: GPUCompareFunction,
@@ -73,11 +75,17 @@ export class Program {
     /** @type {GPUBindGroupLayoutEntry[]} */
     const entries = block ? [{ binding: block.binding, visibility: 3, buffer: {} }] : [];
     for (const texture of description.textures) {
-      const { binding, dimension, sampler } = texture, visibility = visible(texture.stages);
+      const { binding, dimension, sampler, multisampled } = texture, visibility = visible(texture.stages);
       const sampleType = sampleTypes[texture.name] ?? (texture.filterable || texture.sample_type !== 'float' ? texture.sample_type : 'unfilterable-float');
-      entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension } });
+      entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension, multisampled } });
       const type = sampler === 'filtering' && sampleType !== 'float' ? 'non-filtering' : sampler;
       if (type) entries.push({ binding: binding.sampler, visibility, sampler: { type } });
+    }
+    for (const { binding, stages, access } of description.storage_buffers ?? [])
+      entries.push({ ...binding, visibility: visible(stages), buffer: { type: access === 'readonly' ? 'read-only-storage' : 'storage' } });
+    for (const { binding, stages, access, type, format } of description.storage_images ?? []) {
+      const way = { readonly: 'read-only', writeonly: 'write-only' }[access] ?? 'read-write';
+      entries.push({ ...binding, visibility: visible(stages), storageTexture: { access: way, format: formatOf(format), viewDimension: dimensionOf(type) } });
     }
     this.group = device.createBindGroupLayout({ entries, label: description.program });
     this.layout = device.createPipelineLayout({ bindGroupLayouts: [this.group] });
@@ -184,6 +192,8 @@ export class Values {
     this.buffer = description.uniform_block ? device.createBuffer({ size: this.data.byteLength, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST }) : undefined;
     /** @type {Map<string, { view: GPUTextureView, sampler?: GPUSampler }>} */
     this.resources = new Map();
+    /** @type {Map<number, GPUBindingResource>} */
+    this.memory = new Map();
     this.given = new Set();
     this.isChanged = true;
     this.bindGroup = null;
@@ -255,6 +265,30 @@ export class Values {
     return true;
   }
 
+  /** Sets a storage buffer. It has no counterpart in WebGL, and needs a value before it is drawn with.
+   * @param {string} name  of the block, not of its instance @param {GPUBuffer} buffer
+   * @returns {boolean} whether the program uses it */
+  setBuffer(name, buffer) {
+    return this.#setMemory(this.program.description.storage_buffers?.find(({ block }) => block === name), { buffer });
+  }
+
+  /** Sets an image, whose texels a shader loads and stores; as a storage buffer.
+   * @param {string} name @param {GPUTexture} texture @param {number} [level]
+   * @returns {boolean} whether the program uses it */
+  setImage(name, texture, level = 0) {
+    const described = this.program.description.storage_images?.find((each) => each.name === name);
+    const view = described && texture.createView({ dimension: dimensionOf(described.type), baseMipLevel: level, mipLevelCount: 1 });
+    return this.#setMemory(described, view);
+  }
+
+  /** @param {Memory | undefined} described @param {GPUBindingResource | undefined} resource */
+  #setMemory(described, resource) {
+    if (!described || !resource) return false;
+    this.memory.set(described.binding.binding, resource);
+    this.bindGroup = null;
+    return true;
+  }
+
   /** Sends what changed to the GPU, and binds it. The GPU sees the last values before `queue.submit`.
    * @param {GPURenderPassEncoder} pass */
   bind(pass) {
@@ -264,11 +298,17 @@ export class Values {
     if (!this.bindGroup) {
       /** @type {GPUBindGroupEntry[]} */
       const entries = block && buffer ? [{ binding: block.binding, resource: { buffer } }] : [];
-      for (const { name, dimension, sample_type, sampler, binding } of description.textures) {
+      for (const { name, dimension, sample_type, sampler, multisampled, binding } of description.textures) {
         const given = this.resources.get(name);
+        if (multisampled && !given) throw new Error(`${description.program}: '${name}' has no value: call setTexture with a texture of several samples`);
         entries.push({ binding: binding.texture, resource: given?.view ?? blackTexture(device, sample_type, dimension === '3d' ? '3d' : '2d').createView({ dimension }) });
         const own = sampler === 'non-filtering' ? null : given?.sampler; // its texels are read one by one
         if (sampler) entries.push({ binding: binding.sampler, resource: own ?? device.createSampler(sampler === 'comparison' ? { compare: 'less-equal' } : {}) });
+      }
+      for (const { name, binding } of [...(description.storage_buffers ?? []), ...(description.storage_images ?? [])]) {
+        const resource = this.memory.get(binding.binding);
+        if (!resource) throw new Error(`${description.program}: '${name}' has no value: call setBuffer or setImage`);
+        entries.push({ ...binding, resource });
       }
       this.bindGroup = device.createBindGroup({ layout: group, entries });
     }
@@ -307,6 +347,19 @@ function shapeOf(type) {
   if (matrix) return { kind: 'float', columns: Number(matrix[1]), rows: Number(matrix[2] ?? matrix[1]) };
   const kind = vector ? { '': 'float', b: 'bool', i: 'int', u: 'uint' }[vector[1]] : type;
   return { kind, columns: 1, rows: vector ? Number(vector[2]) : 1 };
+}
+
+/** The view of an image of GLSL: `image2DArray`.
+ * @param {string} type @returns {GPUTextureViewDimension} */
+function dimensionOf(type) {
+  return type.endsWith('3D') ? '3d' : type.endsWith('Array') ? '2d-array' : '2d';
+}
+
+/** The name of a format of GLSL in WebGPU: `rgba8` is `rgba8unorm`.
+ * @param {string} format @returns {GPUTextureFormat} */
+function formatOf(format) {
+  const [, channels, end] = /^([a-z]+\d+)(.*)$/.exec(format) ?? [];
+  return /** @type {GPUTextureFormat} */ (channels + { '': 'unorm', _snorm: 'snorm', f: 'float', i: 'sint', ui: 'uint' }[end]);
 }
 
 /** The bytes of a vertex format.

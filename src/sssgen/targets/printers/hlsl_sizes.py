@@ -49,6 +49,15 @@ def definition(needed: SizeFunction) -> list[Line]:
             Line("}"),
             Line(""),
         ]
+    if texture.dim == "2DMS":
+        return [
+            Line(f"int2 {name}({_texture_type(texture)} map) {{"),
+            Line("    uint width, height, samples;"),
+            Line("    map.GetDimensions(width, height, samples);"),
+            Line("    return int2(width, height);"),
+            Line("}"),
+            Line(""),
+        ]
     return [
         Line(f"int{len(sizes)} {name}({_texture_type(texture)} map, int level) {{"),
         Line(f"    uint {outs}, levels;"),
@@ -60,5 +69,5 @@ def definition(needed: SizeFunction) -> list[Line]:
 
 
 def _texture_type(type_: Sampler) -> str:
-    texels = "" if type_.kind == "float" else f"<{type_.kind}4>"
+    texels = "" if type_.kind == "float" and type_.dim != "2DMS" else f"<{type_.kind}4>"
     return f"Texture{type_.dim}{'Array' if type_.array else ''}{texels}"

@@ -1,4 +1,4 @@
-"""The printed lines: where a long line is broken, and the comments on lines."""
+"""The printed lines: where a long line is broken, the comments on lines, and whether a text can take a member."""
 
 from __future__ import annotations
 
@@ -93,3 +93,19 @@ def with_doc(text: str, uniform: ir.Uniform) -> Line:
     words = first_sentence(uniform.doc)
     full = f"{text}  // {words}"
     return Line(full if words and len(full) <= WIDTH else text, uniform.span)
+
+
+def is_postfix(text: str) -> bool:
+    """Whether a text is a name with members, or a call, so that a member or an index can be added."""
+    name, _, rest = text.partition("(")
+    return name.replace(".", "").isidentifier() and (not rest or _closes(rest))
+
+
+def _closes(text: str) -> bool:
+    """Whether only the last character closes the parenthesis that is open before the text."""
+    depth = 1
+    for index, char in enumerate(text):
+        depth += (char == "(") - (char == ")")
+        if depth == 0:
+            return index == len(text) - 1
+    return False

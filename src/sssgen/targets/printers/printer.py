@@ -34,7 +34,7 @@ from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.number_text import float_text
-from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, is_postfix, summary, wrap
 from sssgen.targets.uniform_layout import Member
 
 if TYPE_CHECKING:
@@ -183,7 +183,7 @@ class Printer:
         text = self.inlined.get(local.name)
         if text is None:
             return local.name, PRIMARY
-        return text, PRIMARY if _is_postfix(text) else TERNARY
+        return text, PRIMARY if is_postfix(text) else TERNARY
 
     def global_value(self, value: ir.Global) -> str:
         return value.name
@@ -315,11 +315,12 @@ class Printer:
         """An operation on shared memory, by its row's text for this language."""
         pattern = self.memory_text(stmt)
         result = self.expr(stmt.result) if stmt.result is not None else ""
-        into, also = (f"{result} = ", f", {result}") if result else ("", "")
-        type_ = self.type(stmt.result.type) if stmt.result is not None else ""
-        free = self.free_name("extent" if MEMORY[stmt.name].image else "swapped") if "{free}" in pattern else ""
+        into, also, first = (f"{result} = ", f", {result}", ".x") if result else ("", "", "")
+        typed = stmt.result if stmt.result is not None or not stmt.args else stmt.args[-1]
+        type_ = self.type(typed.type) if typed is not None and "{type}" in pattern else ""
+        free = self.free_name("extent" if stmt.name == "imageSize" else "swapped") if "{free}" in pattern else ""
         args = [*map(self.place, stmt.args[:1]), *map(self.expr, stmt.args[1:])]
-        text = pattern.format(*args, result=result, into=into, also=also, free=free, type=type_)
+        text = pattern.format(*args, result=result, into=into, also=also, first=first, free=free, type=type_)
         return text if text.endswith("}") else f"{text};"
 
     def memory_text(self, stmt: ir.MemoryOperation) -> str:
@@ -480,22 +481,6 @@ class Printer:
     def print_entry(self, name: str) -> list[Line]:
         """The entry function of the stage, where that is not the author's own."""
         return []
-
-
-def _is_postfix(text: str) -> bool:
-    """Whether a text is a name with members, or a call, so that a member or an index can be added."""
-    name, _, rest = text.partition("(")
-    return name.replace(".", "").isidentifier() and (not rest or _closes(rest))
-
-
-def _closes(text: str) -> bool:
-    """Whether only the last character closes the parenthesis that is open before the text."""
-    depth = 1
-    for index, char in enumerate(text):
-        depth += (char == "(") - (char == ")")
-        if depth == 0:
-            return index == len(text) - 1
-    return False
 
 
 def _channel(arg: ir.Expr) -> str:

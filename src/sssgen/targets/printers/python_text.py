@@ -62,10 +62,11 @@ def texture_text(texture: Uniform) -> str:
     hints = {name for name, _ in texture.hints}
     texel = next((text for hint, text in _TEXELS.items() if hint in hints), _TEXELS["default_white"])
     type_ = texture.type
-    data = _SHAPES[type_.dim].format(texel if type_.kind == "float" else "[0, 0, 0, 0]")
+    layered = type_.array or type_.dim == "2DMS"  # samples are layers
+    data = _SHAPES[type_.dim.removesuffix("MS")].format(texel if type_.kind == "float" else "[0, 0, 0, 0]")
     options = {"dim": '"Cube"'} if type_.dim == "Cube" else {}
-    options |= {"layers": "True"} if type_.array else {}
+    options |= {"layers": "True"} if layered else {}
     options |= {"kind": f'"{type_.kind}"'} if type_.kind != "float" else {}
     options |= {"compare": "True"} if type_.shadow else {}
     named = "".join(f", {name}={value}" for name, value in options.items())
-    return f"Texture({f'[{data}]' if type_.array else data}{named})"
+    return f"Texture({f'[{data}]' if layered else data}{named})"

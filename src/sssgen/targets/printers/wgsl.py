@@ -131,14 +131,13 @@ class WgslPrinter(AtomicPrinter):
         return wrap(f"const {declared} = {self.expr(constant.value)};", constant.span)
 
     def buffer_binding(self, buffer: ir.Variable) -> int:
-        """Behind those of the textures and samplers."""
+        """Behind those of the textures and samplers: buffers, then images."""
         textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
-        return self.target.bindings.first + 1 + 2 * textures + self.buffers.index(buffer)
+        number = buffer.order if buffer.order >= 0 else [*self.buffers, *self.images].index(buffer)
+        return self.target.bindings.first + 1 + 2 * textures + number
 
     def image_binding(self, image: ir.Variable) -> int:
-        """Behind those of the storage buffers."""
-        textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
-        return self.target.bindings.first + 1 + 2 * textures + len(self.buffers) + self.images.index(image)
+        return self.buffer_binding(image)
 
     def print_image(self, variable: ir.Variable) -> list[Line]:
         image = variable.type

@@ -15,9 +15,13 @@ def _level(level: Value) -> int:
     return int(np.ravel(level)[0])
 
 
-def textureSize(texture: Texture, level: Value) -> Value:
-    """The size of each lane's level, (k, n); a level that does not exist, undefined in GLSL, is the nearest one."""
-    count = (len(texture.levels[0]),) if texture.layers else ()
+def textureSize(texture: Texture, level: Value | None = None) -> Value:
+    """The size of each lane's level, (k, n); a level that does not exist, undefined in GLSL, is the nearest one.
+
+    A texture with samples has no levels; its samples are layers.
+    """
+    count = (len(texture.levels[0]),) if texture.layers and level is not None else ()
+    level = 0 if level is None else level
     sizes = np.array([(*texture.size(index), *count) for index in range(len(texture.levels))], np.int32)
     return sizes[np.clip(np.ravel(level), 0, len(sizes) - 1)].T
 
@@ -99,7 +103,12 @@ def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offs
 
 
 def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
-    """The level is the same in all lanes; 0 outside of it. In the working precision."""
+    """The level is the same in all lanes; 0 outside of it. In the working precision.
+
+    A texture with samples has them as layers, and a sample in place of the level.
+    """
+    if texture.layers and len(place) == 2:
+        place, level = np.array(np.broadcast_arrays(*place, level)), 0
     texels = texture.fetch(place, _level(level))
     return texels if texels.dtype.kind in "iu" else texels.astype(working())
 

@@ -1,0 +1,104 @@
+"""Joins the storage buffers and images of the two stages of a program: they are one memory of the program.
+
+A buffer of both stages is one buffer if its block has one name, an image if the variable has one name. Each gets a
+binding, and its number among those of the program, for targets that number them.
+Place: behind `link_program`, so that what no function uses does not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from sssgen.ir.nodes import Module, Variable
+from sssgen.ir.types import spell
+from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.scopes import globals_of
+from sssgen.passes.stage.storage_images import used_access
+from sssgen.passes.stage.varyings import contrast, place
+from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.variable_effects import effects
+
+MEMORY = ("buffer", "image")
+"""The kinds of storage, in the order of the numbers."""
+
+
+def memory_key(variable: Variable) -> tuple[str, str]:
+    """What is equal for the memory of both stages: its storage, and the name by which a program binds it."""
+    return variable.storage, spell(variable.type) if variable.storage == "buffer" else variable.name
+
+
+def without_unused_memory(module: Module) -> Module:
+    """The module without storage buffers and images that no function mentions."""
+    names = set[str]().union(*map(globals_of, module.functions))
+    variables = [each for each in module.variables if each.storage not in MEMORY or each.name in names]
+    return module._replace(variables=tuple(variables))
+
+
+def unlike_memory(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
+    """The buffers and images of one name that differ; their places are in the fragment shader."""
+    theirs = {memory_key(variable): variable for variable in _memory(vertex)}
+    for here in _memory(fragment):
+        there = theirs.get(memory_key(here))
+        if there is None:
+            continue
+        kind, name = memory_key(here)
+        words = contrast(there.type, here.type)
+        if words[0] == words[1]:
+            words = there.layout or "without a format", here.layout or "without a format"
+        if words[0] == words[1] and -1 not in (there.location, here.location):
+            words = f"binding = {there.location}", f"binding = {here.location}"
+        if words[0] != words[1]:
+            what = "storage buffer" if kind == "buffer" else "image"
+            message = f"the {what} '{name}' is {words[0]} in {place(there.span)}, but {words[1]} here"
+            yield Unsupported(message, here.span, hint="it is one memory of the program: declare it alike")
+
+
+def with_shared_memory(vertex: Module, fragment: Module, capabilities: Capabilities) -> tuple[Module, Module]:
+    """Both stages with one binding, number and access for each buffer and image.
+
+    Raises Unsupported where a vertex shader reads what the fragment shader writes, if the target cannot.
+    """
+    modules = (vertex, fragment)
+    keys = dict.fromkeys(memory_key(variable) for module in modules for variable in _memory(module))
+    ordered = sorted(keys, key=lambda key: MEMORY.index(key[0]))
+    bindings = _bindings([variable for module in modules for variable in _memory(module)])
+    written = {memory_key(each) for module in modules for each in _memory(module) if _writes(module, each)}
+    if not capabilities.vertex_buffer_writes:
+        of_vertex = {memory_key(variable) for variable in _memory(vertex)}
+        for variable in _memory(fragment):
+            if memory_key(variable) in of_vertex & written:
+                what = f"'{variable.name}' is used by the vertex shader, too, and one of both stages writes it"
+                hint = "let the vertex shader read a buffer or image of its own, with the values of the last draw"
+                raise Unsupported(what, variable.span, hint=hint)
+
+    def shared(variable: Variable) -> Variable:
+        if variable.storage not in MEMORY:
+            return variable
+        key = memory_key(variable)
+        access = variable.access if key in written else "readonly"
+        return variable._replace(location=bindings[key], order=ordered.index(key), access=access)
+
+    first, second = [
+        module._replace(variables=tuple([shared(variable) for variable in module.variables])) for module in modules
+    ]
+    return first, second
+
+
+def _memory(module: Module) -> list[Variable]:
+    return [variable for variable in module.variables if variable.storage in MEMORY]
+
+
+def _writes(module: Module, variable: Variable) -> bool:
+    if variable.storage == "image":
+        return used_access(module)[variable.name] != "readonly"
+    return any(variable.name in effect.writes for effect in effects(module).values())
+
+
+def _bindings(memory: Sequence[Variable]) -> dict[tuple[str, str], int]:
+    """That of the source, or the next one that nothing has: some targets number buffers and images together."""
+    bindings = {memory_key(variable): variable.location for variable in memory if variable.location >= 0}
+    for variable in memory:
+        if memory_key(variable) not in bindings:
+            free = (number for number in range(2 * len(memory)) if number not in bindings.values())
+            bindings[memory_key(variable)] = next(free)
+    return bindings
