@@ -138,6 +138,34 @@ def test_the_samples_of_a_pixel(target: str, value: str) -> None:
     assert compile_errors(emitted, target) == []
 
 
+COUNTERS = """#version 310 es
+precision mediump float;
+layout(location = 0) out vec4 color;
+layout(binding = 0, offset = 4) uniform atomic_uint hits;
+layout(binding = 0) uniform atomic_uint rest[8];
+void main() {
+    if (atomicCounterIncrement(hits) == 0u) discard;
+    atomicCounterIncrement(rest[2]);
+    color = vec4(float(atomicCounterDecrement(rest[1]) + atomicCounter(hits)));
+}
+"""
+
+
+@pytest.mark.parametrize("target", ["wgsl", "hlsl", "glsl-330"])
+def test_atomic_counters_are_storage_buffers(target: str) -> None:
+    module = load_glsl_text(COUNTERS, "case.frag").module
+    assert [variable.name for variable in module.variables if variable.storage == "buffer"] == [
+        "hitsCounter",
+        "restCounter",
+    ]
+    emitted = next(iter(transpile(module, target, "case", keep=True).files.values()))
+    assert compile_errors(emitted, target) == []
+    if target == "wgsl":
+        assert "    atomicAdd(&restCounter.rest[2], 1u);\n" in emitted
+        assert "atomicAdd(&restCounter.rest[1], 0xffffffffu);" in emitted  # one less
+        assert "- 1u + atomicLoad(&hitsCounter.hits)" in emitted  # the new value
+
+
 def test_samples_that_a_target_lacks() -> None:
     text = "#version 320 es\nprecision highp float;\nout vec4 color;\nvoid main() { color = vec4(VALUE); }\n"
     for target, value in (

@@ -14,6 +14,7 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import overload, resolve
 from sssgen.ir.types import FLOAT, INT, VOID, Array, Sampler, Scalar, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import subexpressions
+from sssgen.lang.check import atomic_counters
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.assignment_checker import check_writable
 from sssgen.lang.check.constant_values import constant_value
@@ -57,6 +58,10 @@ class CallChecker:
         if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
             return self.constructors.construct_parts(struct, call)
         overloads = context.functions.get(name, ())
+        if name.startswith("atomicCounter") and not overloads and context.plain:
+            operation = atomic_counters.atomic(name, call)
+            if operation is not None:
+                return self.counter(operation, id(call) in self.expressions.dropped)
         if name in MEMORY and not overloads and context.plain and name != "arrayLength":
             return self.memory.operation(MEMORY[name], call)
         args = self.expressions.operands(call.args, self.outs(name, overloads, call))
@@ -77,6 +82,15 @@ class CallChecker:
                 return result
         known = [*context.functions, *context.structs, *(() if context.plain else q.QUANTITIES), *BUILTINS]
         raise context.unknown(callee.span, "function", name, known)
+
+    def counter(self, operation: s.Expression, dropped: bool) -> Typed:
+        """An operation on an atomic counter; `dropped`: its result is not used."""
+        if dropped:
+            self.expressions.dropped.add(id(operation))
+        try:
+            return self.expressions.check(operation)
+        finally:
+            self.expressions.dropped.discard(id(operation))  # another expression may get this id
 
     def hides_builtins(self, overloads: Sequence[Signature]) -> bool:
         """Whether functions hide the builtins of their name, as those of a file of desktop GLSL do (4.60, 4.2.2)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import IMAGES, VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
+from sssgen.lang.check import atomic_counters
 from sssgen.lang.check.constant_values import constant_value, is_constant
 from sssgen.lang.check.declared_names import check_global_name, declare_struct, precision_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
@@ -64,6 +65,9 @@ class GlobalChecker:
             raise context.fail(declaration.qualifiers.span, "only what stages pass can be invariant")
         if "uniform" in keywords and context.plain and declaration.type.name in IMAGES:
             declare_image(self.expressions, declaration, external.doc)
+        elif "uniform" in keywords and context.plain and declaration.type.name == atomic_counters.TYPE:
+            for counter in atomic_counters.buffers(context, declaration, external.doc):
+                self.memory.buffer(counter)
         elif "uniform" in keywords:
             self.interface.check_uniform(declaration.qualifiers)
             for declarator in declaration.declarators:

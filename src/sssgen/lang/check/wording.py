@@ -83,7 +83,7 @@ _UNSUPPORTED = (
     (r"[iu]?sampler2DRect\w*", "WebGPU has no such textures; write sampler2D, and divide coordinates by textureSize"),
     (r"[iu]?samplerBuffer", "WebGPU has no such textures; write a readonly storage buffer, or sampler2D"),
     (r"[iu]?sampler2DMSArray", "WebGPU has no such textures; write a sampler2DMS for each layer"),
-    (r"atomic_uint", "atomics belong to compute shaders"),
+    (r"atomic_uint", "an atomic counter is a uniform at file scope"),
 )
 
 
