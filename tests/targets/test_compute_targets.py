@@ -64,6 +64,15 @@ def test_metal_has_the_layout_of_the_source() -> None:
     assert "P ps[1];" in metal
 
 
+def test_functions_of_metal_get_references_to_buffers() -> None:
+    """The caller has them in memory of the device, in the layout of the source, as in a kernel."""
+    buffer = "#version 430\nbuffer B { vec3 c; float w; uint n; } b;\n"
+    text = buffer + "float f(float x) { b.w = x; return float(atomicAdd(b.n, 2u)); }"
+    metal = next(iter(transpile(load_glsl_text(text, "x.glsl").module, "metal", "x").files.values()))
+    assert "float f(float x, device B& b)" in metal
+    assert "alignas(16) packed_float3 c;" in metal
+
+
 @pytest.mark.parametrize(
     ("target", "text", "name"),
     [

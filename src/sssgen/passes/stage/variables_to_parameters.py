@@ -41,8 +41,9 @@ def variables_to_parameters(module: Module, entry: str = "") -> Module:
         _entry(new, len(old.params), module) if old.key == entry else new
         for old, new in zip(module.functions, closer.run(), strict=True)
     ]
-    others = [variable for variable in module.variables if module.workgroup and variable.storage != "private"]
-    return module._replace(functions=tuple(functions), variables=tuple(others))
+    kept = ("buffer", "image", *(("in", "shared") if module.workgroup else ()))
+    others = tuple([variable for variable in module.variables if variable.storage in kept])
+    return module._replace(functions=tuple(functions), variables=others)
 
 
 def _entry(function: Function, own: int, module: Module) -> Function:
