@@ -27,6 +27,10 @@ CASES = {
     "a variable of an earlier case": (SWITCH, 1.0, 21.5),
     "a variable of an earlier case in the last one": (SWITCH, 7.0, 12.0),
     "the case with the value": (SWITCH, 0.0, 10.0),
+    "labels of another signedness in ES 3.20": (
+        "#version 320 es\nfloat f(float x) { switch (int(x)) { case 2u: return 5.0; case 3: return 6.0; } return x; }",
+        2.0, 5.0,
+    ),
     "an out argument that is converted": (
         "void give(float x, out uint n, out int m) { n = uint(x); m = -int(x); }"
         "float f(float x) { float a; vec2 b; give(x, a, b.y); return a * 10.0 + b.y; }", 3.0, 27.0,

@@ -14,15 +14,15 @@ from sssgen.support.diagnostics import SssgenError
 
 VERTEX = """#version 450
 struct Bone { mat4 place; vec4 tint; };
-layout(std430, binding = 3) buffer Bones { Bone bones[]; };
+layout(std430, binding = 3) buffer Bones { Bone bones[]; } skeleton;
 layout(std430) readonly buffer Scale { float scale[]; } extra;
 layout(std430) readonly buffer Unused { float never[]; };
 in vec3 position;
 in int bone;
 out vec4 tint;
 void main() {
-    tint = bones[bone].tint;
-    gl_Position = bones[bone].place * vec4(position * extra.scale[0], 1.0);
+    tint = skeleton.bones[bone].tint;
+    gl_Position = skeleton.bones[bone].place * vec4(position * extra.scale[0], 1.0);
 }
 """
 FRAGMENT = """#version 450
@@ -52,7 +52,7 @@ def translate(vertex: str, fragment: str, target: str = "wgsl") -> TranslatedPro
 def test_each_buffer_and_image_has_one_binding() -> None:
     vertex, fragment, text = translate(VERTEX, FRAGMENT).files.values()
     assert re.findall(r"@binding\((\d+)\) var<storage, (\w+)> (\w+)", vertex) == [
-        ("3", "read", "bones_buffer"), ("4", "read", "extra"),
+        ("3", "read", "skeleton"), ("4", "read", "extra"),
     ]  # fmt: skip
     assert "@group(0) @binding(3) var<storage, read> mine: Bones;" in fragment
     assert "@group(0) @binding(5) var<storage, read_write> counts_buffer: Counts;" in fragment
@@ -86,6 +86,11 @@ def test_bindings_of_the_source_stay_and_others_are_free() -> None:
         ("binding = 3", "binding = 2", r"'Bones' is binding = 3 in a\.vert:3:\d+, but binding = 2 here"),
         ("std430, binding = 3", "std140, binding = 3", r"'Bones' is std430 in a\.vert:3:\d+, but std140 here"),
         (
+            "buffer Counts { uint counts[]; };",
+            "buffer Counts { uint counts[]; };\nbuffer Others { float never[]; };",
+            r"'never' is a member of the storage buffer 'Unused', too, in a\.vert:5:\d+\n",
+        ),
+        (
             "    counts[at.x] += 1u;",
             "mine.bones[at.x].tint = tint;",
             r"'mine' is used by the vertex shader, too, .*\(wgsl",
@@ -97,10 +102,17 @@ def test_memory_that_differs(old: str, new: str, message: str) -> None:
         translate(VERTEX, FRAGMENT.replace(old, new))
 
 
+def test_a_buffer_has_an_instance_name_in_both_stages() -> None:
+    fragment = FRAGMENT.replace("} mine;", "};").replace("mine.", "")
+    message = r"'Bones' is with an instance name in a\.vert:3:\d+, but without an instance name here"
+    with pytest.raises(SssgenError, match=message):
+        translate(VERTEX, fragment)
+
+
 def test_other_targets_write_what_the_vertex_shader_reads() -> None:
     fragment = FRAGMENT.replace("counts[at.x] += 1u;", "mine.bones[at.x].tint = tint;")
     vertex, text, _ = translate(VERTEX, fragment, "hlsl").files.values()
-    assert "RWByteAddressBuffer bones_buffer : register(u3);" in vertex
+    assert "RWByteAddressBuffer skeleton : register(u3);" in vertex
     assert "RWByteAddressBuffer mine : register(u3);" in text
 
 

@@ -317,7 +317,8 @@ class Variable(NamedTuple):
     `value` of constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''.
     `interpolation` is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer or image its
     binding. `access` is that of these: readonly, writeonly or ''; `layout` is std430 or std140, of an image its format,
-    or ''. `block` is the block of inputs or outputs that declares it, or ''. `order` is the number of a buffer or
+    or ''. `block` is the block of inputs or outputs that declares it, or ''; of a storage buffer its own where that has
+    no instance name, so that its members are names at file scope. `order` is the number of a buffer or
     image among those of both stages of a program, -1 in a stage alone.
     """
 

@@ -44,6 +44,7 @@ def check_global_name(context: CheckContext, name: s.Name, overloads: bool = Fal
     check_not_reserved(context, name)
     taken = name.text in context.globals or name.text in context.structs or name.text in context.aliases
     taken = taken or name.text in context.blocks or name.text in context.uniform_blocks
+    taken = taken or name.text in context.buffer_members
     taken = taken or (name.text in q.QUANTITIES and not context.plain)
     if taken or (not overloads and name.text in context.functions):
         raise context.fail(name.span, f"'{name.text}' is already declared")

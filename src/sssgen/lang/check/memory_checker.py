@@ -104,8 +104,9 @@ class MemoryChecker:
             name = unused_global_name(context, f"{name}_buffer")
         layout = next((name for name, _ in reversed(own) if name in ("std140", "std430")), "std430")
         context.variables[name] = ir.Variable(
-            name, struct, "buffer", None, "", "", binding, block.doc, block.name.span, access, layout
-        )
+            name, struct, "buffer", None, "", "", binding, block.doc, block.name.span, access, layout,
+            label if block.instance is None else "",
+        )  # fmt: skip
         context.globals[name] = GlobalValue(struct, "", writable=access != "readonly")
         if block.instance is None:
             for member in block.members:

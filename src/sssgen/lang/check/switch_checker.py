@@ -77,7 +77,8 @@ class SwitchChecker:
             number = constant_int(self.context, label.value)
             if number is None:
                 raise self.context.fail(label.value.span, "a case label must be a constant integer")
-            if self.context.es and isinstance(label.value, s.Number):
+            # a later version converts the int (GLSL ES 3.20, 6.2)
+            if 0 < self.context.es < 320 and isinstance(label.value, s.Number):
                 kind = UINT if label.value.text.endswith(("u", "U")) else INT
                 if kind != value.type:
                     message = f"this label is {a_type(kind)}, but the switch has {a_type(value.type)}"

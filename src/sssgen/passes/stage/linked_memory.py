@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sssgen.ir.nodes import Module, Variable
-from sssgen.ir.types import spell
+from sssgen.ir.types import Struct, spell
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import globals_of
 from sssgen.passes.stage.storage_images import used_access
@@ -37,6 +37,7 @@ def without_unused_memory(module: Module) -> Module:
 def unlike_memory(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
     """The buffers and images of one name that differ; their places are in the fragment shader."""
     theirs = {memory_key(variable): variable for variable in _memory(vertex)}
+    yield from _shared_names(vertex, fragment)
     for here in _memory(fragment):
         there = theirs.get(memory_key(here))
         if there is None:
@@ -45,12 +46,34 @@ def unlike_memory(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
         words = contrast(there.type, here.type)
         if words[0] == words[1]:
             words = there.layout or "without a format", here.layout or "without a format"
+        if words[0] == words[1]:
+            words = _instance(there), _instance(here)
         if words[0] == words[1] and -1 not in (there.location, here.location):
             words = f"binding = {there.location}", f"binding = {here.location}"
         if words[0] != words[1]:
             what = "storage buffer" if kind == "buffer" else "image"
             message = f"the {what} '{name}' is {words[0]} in {place(there.span)}, but {words[1]} here"
             yield Unsupported(message, here.span, hint="it is one memory of the program: declare it alike")
+
+
+def _instance(variable: Variable) -> str:
+    return f"{'without' if variable.block else 'with'} an instance name"
+
+
+def _shared_names(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
+    """The members with one name of two buffers without instance names (GLSL 4.60, 4.3.9)."""
+    members = {
+        field.name: variable
+        for variable in _memory(vertex)
+        if variable.block and isinstance(variable.type, Struct)
+        for field in variable.type.fields
+    }
+    for here in _memory(fragment):
+        for field in here.type.fields if here.block and isinstance(here.type, Struct) else ():
+            there = members.get(field.name, here)
+            if memory_key(there) != memory_key(here):
+                message = f"'{field.name}' is a member of the storage buffer '{there.block}', too, in {place(there.span)}"
+                yield Unsupported(message, here.span, hint="give one of the buffers an instance name")
 
 
 def with_shared_memory(vertex: Module, fragment: Module, capabilities: Capabilities) -> tuple[Module, Module]:
