@@ -88,7 +88,7 @@ def test_bindings_of_the_source_stay_and_others_are_free() -> None:
         (
             "buffer Counts { uint counts[]; };",
             "buffer Counts { uint counts[]; };\nbuffer Others { float never[]; };",
-            r"'never' is a member of the storage buffer 'Unused', too, in a\.vert:5:\d+\n",
+            r"the storage buffer 'Unused' has a 'never', too, in a\.vert:5:\d+\n",
         ),
         (
             "    counts[at.x] += 1u;",

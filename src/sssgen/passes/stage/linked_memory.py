@@ -72,7 +72,7 @@ def _shared_names(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
         for field in here.type.fields if here.block and isinstance(here.type, Struct) else ():
             there = members.get(field.name, here)
             if memory_key(there) != memory_key(here):
-                message = f"'{field.name}' is a member of the storage buffer '{there.block}', too, in {place(there.span)}"
+                message = f"the storage buffer '{there.block}' has a '{field.name}', too, in {place(there.span)}"
                 yield Unsupported(message, here.span, hint="give one of the buffers an instance name")
 
 
