@@ -119,3 +119,25 @@ def test_the_length_of_a_buffer_with_atomics() -> None:
     module = load_glsl_text(text, "bins.comp").module
     emitted = next(iter(transpile(module, "wgsl", "bins", keep=True).files.values()))
     assert "arrayLength(&bins" in emitted
+
+
+def test_a_buffer_of_arrays_of_arrays_is_bytes_in_hlsl() -> None:
+    """glslang refuses structured buffers whose elements are arrays."""
+    text = "buffer A { uint a[2][3]; };\nvoid main() { a[1][2] = 3u; }"
+    assert "a_buffer.Store(20, 3u)" in emitted(text, "hlsl")
+
+
+@pytest.mark.parametrize("target", ["hlsl", "glsl-330", "wgsl"])
+def test_no_two_buffers_have_one_binding(target: str) -> None:
+    """Those of the source stay; those without one, and counters, get the next that is free."""
+    text = "uniform atomic_uint n;\nbuffer A { uint a; };\nlayout(binding = 0) buffer B { uint b; };\n"
+    result = compiled(text + "void main() { a = atomicCounterIncrement(n); b = 2u; }", target)
+    bindings = {each["name"]: each["binding"]["binding"] for each in result.reflection["storage_buffers"]}
+    assert len(set(bindings.values())) == 3, bindings
+
+
+def test_lengths_of_buffers_in_functions_of_metal() -> None:
+    text = "#version 430\nbuffer B { uint many[]; } b;\nfloat f() { return float(b.many.length()); }"
+    assert "float f(int many_length)" in next(
+        iter(transpile(load_glsl_text(text, "x.glsl").module, "metal", "x").files.values())
+    )

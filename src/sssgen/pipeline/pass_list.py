@@ -190,7 +190,7 @@ TARGET: tuple[Pass, ...] = (
         "refuse storage buffers and images that the target lacks, and copies of atomics",
         _MEMORY,
     ),
-    Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _COMPUTE),
+    Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _MEMORY),
     Pass(
         "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
     ),

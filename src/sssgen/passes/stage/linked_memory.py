@@ -7,13 +7,14 @@ Place: behind `link_program`, so that what no function uses does not count.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from sssgen.ir.nodes import Module, Variable
 from sssgen.ir.types import Struct, spell
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import globals_of
 from sssgen.passes.stage.storage_images import used_access
+from sssgen.passes.stage.storage_layout import with_free_bindings
 from sssgen.passes.stage.varyings import contrast, place
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
@@ -84,7 +85,9 @@ def with_shared_memory(vertex: Module, fragment: Module, capabilities: Capabilit
     modules = (vertex, fragment)
     keys = dict.fromkeys(memory_key(variable) for module in modules for variable in _memory(module))
     ordered = sorted(keys, key=lambda key: MEMORY.index(key[0]))
-    bindings = _bindings([variable for module in modules for variable in _memory(module)])
+    memory = [variable for module in modules for variable in _memory(module)]
+    # buffers and images together, as some targets number them so
+    bindings = with_free_bindings([(memory_key(variable), variable.location) for variable in memory])
     written = {memory_key(each) for module in modules for each in _memory(module) if _writes(module, each)}
     if not capabilities.vertex_buffer_writes:
         of_vertex = {memory_key(variable) for variable in _memory(vertex)}
@@ -115,13 +118,3 @@ def _writes(module: Module, variable: Variable) -> bool:
     if variable.storage == "image":
         return used_access(module)[variable.name] != "readonly"
     return any(variable.name in effect.writes for effect in effects(module).values())
-
-
-def _bindings(memory: Sequence[Variable]) -> dict[tuple[str, str], int]:
-    """That of the source, or the next one that nothing has: some targets number buffers and images together."""
-    bindings = {memory_key(variable): variable.location for variable in memory if variable.location >= 0}
-    for variable in memory:
-        if memory_key(variable) not in bindings:
-            free = (number for number in range(2 * len(memory)) if number not in bindings.values())
-            bindings[memory_key(variable)] = next(free)
-    return bindings

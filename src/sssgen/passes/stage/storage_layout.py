@@ -5,8 +5,9 @@ WGSL's own layout is that of std430. An HLSL buffer has elements of one type wit
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Hashable, Iterator, Sequence
+from itertools import count
+from typing import NamedTuple, TypeVar
 
 from sssgen.ir.nodes import (
     Assign,
@@ -34,6 +35,8 @@ from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import outs_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
+
+T = TypeVar("T", bound=Hashable)
 
 
 class Extent(NamedTuple):
@@ -79,6 +82,15 @@ def offsets(struct: Struct, rule: str) -> list[int]:
 
 def _up(offset: int, alignment: int) -> int:
     return (offset + alignment - 1) // alignment * alignment
+
+
+def with_free_bindings(bindings: Sequence[tuple[T, int]]) -> dict[T, int]:
+    """A binding for each name: its own, or the next one that no other has where it is -1."""
+    chosen = {name: binding for name, binding in bindings if binding >= 0}
+    for name, _ in bindings:
+        if name not in chosen:
+            chosen[name] = next(number for number in count() if number not in chosen.values())
+    return chosen
 
 
 def has_buffers(module: Module) -> bool:
@@ -187,14 +199,15 @@ def _shape(type_: Type, rule: str) -> list[tuple[int, int]]:
 
 
 def _has_plain_elements(variable: Variable) -> bool:
-    """Whether a block has one member, whose elements have no padding."""
+    """Whether a block has one member, whose elements are no arrays and have no padding."""
     struct = variable.type
     assert isinstance(struct, Struct)
     (first, *others) = struct.fields
     element = first.type.element if isinstance(first.type, Array) else first.type
     is_array = isinstance(first.type, Array)
     stride = extent(first.type, variable.layout).stride
-    return not others and not _has_padding(element) and (not is_array or stride == _tight(element))
+    is_plain = not isinstance(element, Array) and not _has_padding(element)
+    return not others and is_plain and (not is_array or stride == _tight(element))
 
 
 def _has_padding(type_: Type) -> bool:

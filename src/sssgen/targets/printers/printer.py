@@ -31,6 +31,7 @@ from sssgen.ir.types import (
 )
 from sssgen.passes.scopes import claim, declared
 from sssgen.passes.stage.stage_interface import Stage
+from sssgen.passes.stage.storage_layout import with_free_bindings
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.number_text import float_text
@@ -444,12 +445,12 @@ class Printer:
         return []
 
     def buffer_binding(self, buffer: ir.Variable) -> int:
-        """The binding of a storage buffer: that of the source, or else its number."""
-        return buffer.location if buffer.location >= 0 else self.buffers.index(buffer)
+        """The binding of a storage buffer: that of the source, or the next one that no other buffer has."""
+        return with_free_bindings([(each.name, each.location) for each in self.buffers])[buffer.name]
 
     def image_binding(self, image: ir.Variable) -> int:
-        """The binding of an image: that of the source, or else its number."""
-        return image.location if image.location >= 0 else self.images.index(image)
+        """The binding of an image: that of the source, or the next one that no other image has."""
+        return with_free_bindings([(each.name, each.location) for each in self.images])[image.name]
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The declarations of the uniforms without textures."""
