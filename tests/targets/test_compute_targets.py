@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import Compiled, transpile
+from sssgen.run.compilers import Compiler, Source, errors
 from sssgen.support.diagnostics import SssgenError
 
 HEAD = "#version 430\nlayout(local_size_x = 16) in;\n"
@@ -141,3 +144,10 @@ def test_lengths_of_buffers_in_functions_of_metal() -> None:
     assert "float f(int many_length)" in next(
         iter(transpile(load_glsl_text(text, "x.glsl").module, "metal", "x").files.values())
     )
+
+
+def test_functions_with_storage_buffers_are_checked_as_later_glsl(compiler: Callable[[str], Compiler]) -> None:
+    text = "#version 430\nbuffer B { float many[]; } b;\nfloat f(int i) { return b.many[i]; }"
+    (glsl, *_) = transpile(load_glsl_text(text, "x.glsl").module, "glsl-330", "x").files.values()
+    for name in ("gl", "glslang"):
+        assert errors(compiler(name).check(Source(glsl, "glsl-330", "library"))) == []

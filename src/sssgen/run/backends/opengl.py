@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
-import re
 from collections import OrderedDict
 from collections.abc import Collection, Mapping
 from itertools import count
@@ -13,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.ir.intrinsics import BUILTINS
 from sssgen.run import compilers
 from sssgen.run.backends.backend_interface import (
     Array,
@@ -25,7 +23,7 @@ from sssgen.run.backends.backend_interface import (
     refusal,
 )
 from sssgen.run.backends.draw_backend import DrawingBackend
-from sssgen.run.compilers.gl_driver import DriverGL, messages
+from sssgen.run.compilers.gl_driver import DriverGL, later_version, messages
 from sssgen.targets.runtime.numpy_textures import Texture
 
 HEADS = {
@@ -34,8 +32,6 @@ HEADS = {
     "precision highp sampler2D;\nprecision highp sampler3D;\nprecision highp samplerCube;\n"
     "#line 1\n",
 }
-_LATER = re.compile(rf"\b({'|'.join(name for name, row in BUILTINS.items() if row.later_glsl)})\(")
-"""Functions of GLSL 4.30: whole shaders with one of them state that version."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 _KEPT = 64
 """The most compiled programs of a process; the oldest is released first."""
@@ -77,9 +73,8 @@ class OpenGL(DrawingBackend):
 
     def stages(self, drawing: Drawing) -> tuple[str, str]:
         """The GLSL of the two stages."""
-        head = HEADS[self.target.name]
         fragment = drawing.fragment.text.text
-        head = head.replace("330", "430") if _LATER.search(fragment) else head
+        head = later_version(HEADS[self.target.name], fragment)
         fragment = fragment if fragment.startswith("#version") else head + fragment
         vertex = drawing.vertex.text.text if drawing.vertex else head + _SCREEN
         return vertex, fragment

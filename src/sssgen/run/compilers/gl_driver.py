@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.run.compilers.calling_entry import glsl_entry
 from sssgen.run.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.run.compilers.shadertoy_page import as_program
@@ -17,6 +18,9 @@ _HEADERS = {
     "glsl-es-300": _ES,
     "shadertoy": _ES,
 }
+_LATER_FUNCTIONS = "|".join(name for name, row in BUILTINS.items() if row.later_glsl)
+_LATER = re.compile(rf"\b(?:{_LATER_FUNCTIONS})\(|\bbuffer\s+\w+\s*\{{|\buniform\s+[iu]?image")
+"""What functions have of GLSL 4.30; whole shaders state their version."""
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:version|extension)\b[^\n]*", re.MULTILINE)
 _STRUCT = re.compile(r"^[ \t]*struct \w+\s*\{[^{}]*\};", re.MULTILINE)
 _BASIC = re.compile(r"float|u?int|[iu]?vec[234]|mat[234](?:x[234])?")
@@ -28,7 +32,12 @@ def with_version(text: str, language: str) -> str:
     """`text` with the language's `#version` in front where it has none; line numbers stay as they were."""
     if re.search(r"^\s*#\s*version\b", text, re.MULTILINE):
         return text
-    return f"{_HEADERS[language]}#line 1\n{text}"
+    return later_version(f"{_HEADERS[language]}#line 1\n", text) + text
+
+
+def later_version(head: str, text: str) -> str:
+    """A head with #version 330 as one with 430 where the functions below it need that."""
+    return head.replace("#version 330", "#version 430") if _LATER.search(text) else head
 
 
 class DriverGL(Compiler):
