@@ -36,6 +36,7 @@ class _Variable:
     """The length with which it is declared again"""
     least: int = 0
     """The least length that suits all constant indices"""
+    without_length: bool = False
     used: bool = False
 
     def length(self) -> int:
@@ -106,12 +107,10 @@ class ImplicitLengths:
         name, scope, variable = declarator.name, self.scopes[-1], _Variable()
         lengths = (*declarator.lengths, *declaration.type.lengths)
         if lengths and declarator.value is None:
-            before = scope.get(name.text)
-            variable = (
-                before if before is not None and any(before is array for array in self.arrays.values()) else variable
-            )
+            before = scope.get(name.text, variable)
+            variable = before if before.without_length else variable
             if isinstance(lengths[0], s.Unsized):
-                self.arrays[name.span] = variable
+                self.arrays[name.span], variable.without_length = variable, True
             else:
                 variable.stated = variable.stated or self.number(lengths[0]) or 0
         elif "const" in declaration.qualifiers.keywords and declarator.value is not None:
