@@ -197,6 +197,31 @@ def test_lengths_by_use() -> None:
     assert module.uniforms[1].default == (1.0, 0.5)
 
 
+LENGTHS_BY_SCOPE = {
+    "float a[]; float f() { const int k = 2, m = k * 3 + 1; a[m] = 1.0; return a[0]; }": 8,
+    "const int K = 3; float a[]; float f() { a[K - 1] = 1.0; { const int K = 9; a[K / 2] = 1.0; } return a[0]; }": 5,
+    "float a[]; float g() { float a[9]; return a[8]; } float f() { return a[1]; }": 2,
+    "float a[]; float g(float a[9]) { return a[8]; } float f() { return a[1]; }": 2,
+    "struct S { float a[9]; }; float a[]; float f() { S s; s.a[8] = 1.0; return a[1]; }": 2,
+    "float a[]; float f() { { float a[9]; a[8] = 1.0; } for (float a[9];;) { a[8] = 1.0; break; } return a[1]; }": 2,
+    "float a[]; uniform B { float x[9]; } b; float f() { return a[1] + b.x[8]; }": 2,
+    "float a[]; float f() { return 1.0; }": 1,
+    "float a[]; const int N = 2; float a[N]; float f() { return a[0]; }": 2,
+}
+
+
+@pytest.mark.parametrize("text", LENGTHS_BY_SCOPE)
+def test_lengths_by_use_are_counted_by_scope(text: str) -> None:
+    variables = load(f"#version 450\n{text}\n", "case.glsl").variables
+    assert [spell(each.type) for each in variables if each.name == "a"] == [f"float[{LENGTHS_BY_SCOPE[text]}]"]
+
+
+def test_the_length_by_use_of_a_local_variable() -> None:
+    text = "int f() { float a[]; { float a[]; a[7] = 1.0; } a[1] = 3.0; return a.length(); }\n"
+    emitted_text = first(emitted(text, "a.glsl", "glsl-330"))
+    assert "float a[2]" in emitted_text and "return 2;" in emitted_text
+
+
 @pytest.mark.parametrize("first", ["index = 1", "component = 1"])
 def test_outputs_that_share_a_location(first: str) -> None:
     text = (

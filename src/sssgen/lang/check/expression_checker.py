@@ -200,7 +200,7 @@ class ExpressionChecker:
             return element
         items = _item_counts(declarator.value)
         if declarator.value is None and isinstance(lengths[0], s.Unsized) and self.context.plain:
-            items = [self.context.length_by_use(declarator.name.text)]
+            items = [self.context.length_by_use(declarator.name)]
         unsized = [index for index, length in enumerate(lengths) if isinstance(length, s.Unsized)]
         if declarator.value is not None and unsized and unsized[-1] >= len(items):
             value, _ = self.with_prelude(declarator.value, self.check)

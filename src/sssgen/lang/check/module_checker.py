@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from functools import partial
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import of_uniform
@@ -24,7 +23,7 @@ from sssgen.lang.check.declared_names import declare_struct, names_of_file
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.function_checker import FunctionChecker
 from sssgen.lang.check.global_checker import GlobalChecker
-from sssgen.lang.check.implicit_lengths import length_by_use
+from sssgen.lang.check.implicit_lengths import ImplicitLengths
 from sssgen.lang.check.line_textures import without_lines
 from sssgen.lang.check.loop_checker import LoopChecker
 from sssgen.lang.check.name_scope import GlobalValue
@@ -111,7 +110,7 @@ class ModuleChecker:
         context = self.context
         context.file_names = names_of_file(file)
         if not context.es:
-            context.length_by_use = partial(length_by_use, file)
+            context.length_by_use = ImplicitLengths(file).of
         for external in file.externals:
             try:
                 self.external(external)

@@ -89,7 +89,7 @@ def array_type(
             count = items[index]
         total *= count or 0
         if count is None or count < 1 or total > 65536:
-            hint = "write it, as no other part of the file says it" if isinstance(length, s.Unsized) else ""
+            hint = "write it, as neither a value nor a constant index says it" if isinstance(length, s.Unsized) else ""
             raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536", hint)
         element = Array(element, count)
     return element
