@@ -15,7 +15,7 @@ from sssgen.analyse.verify.compute_verification import verify_compute
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Backend
-from sssgen.support.diagnostics import failure
+from sssgen.support.diagnostics import SssgenError, failure
 
 HEAD = "#version 430 core\nlayout(local_size_x = 32) in;\n"
 BUFFERS = "layout(std430) readonly buffer In { uint a[]; };\nlayout(std430) buffer Out { uint b[]; };\n"
@@ -87,6 +87,27 @@ def test_numbers_that_depend_on_the_order_are_not_compared(verify: Callable[[str
     assert all(place.startswith("out") for place in report.order_places), report.order_places
     everything = verify(body("b[lane * 0u] = i;").replace("b[];", "b[1];"))
     assert everything.reason == "all that it writes depends on the order of the invocations"
+
+
+def test_a_version_that_the_driver_lacks_runs_as_450(verify: Callable[[str], ComputeReport]) -> None:
+    report = verify(body("b[i] = a[i] * 3u;").replace("#version 430 core", "#version 460"))
+    assert report.ok, list(report.lines())
+    assert report.rounds == compute_verification.ROUNDS
+
+
+def test_a_text_that_the_driver_refuses_has_no_rounds(verify: Callable[[str], ComputeReport]) -> None:
+    text = body("b[atomicAdd(b[0], 0u) % 2u + 40u] = i;\n")
+    report = verify(text.replace("#version 430 core", "#version 430 core\n#extension GL_NONE_such : require"))
+    assert report.reason.startswith("the driver refuses it as written: ")
+    assert (report.rounds, report.ordered) == (0, 0)
+    assert not any("depend on the order" in line for line in report.lines())
+
+
+def test_atomic_counters_are_not_verified(verify: Callable[[str], ComputeReport]) -> None:
+    counter = "layout(binding = 0) uniform atomic_uint hits;\n"
+    with pytest.raises(SssgenError, match="'hits' is an atomic counter: compute shaders with atomic counters are not"):
+        verify(body("b[i] = atomicCounterIncrement(hits);", counter))
+    assert verify(body("b[i] = a[i]; // no atomic_uint hits\n")).ok
 
 
 def test_a_wrong_translation_is_found(verify: Callable[[str], ComputeReport], monkeypatch: pytest.MonkeyPatch) -> None:

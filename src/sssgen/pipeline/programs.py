@@ -181,7 +181,7 @@ def target_program(state: State, trace: Trace | None = None) -> Program:
         name = state.renames.get(entry.function.name, entry.function.name)
         return next(function for function in module.functions if function.name == name), entry.inputs
 
-    check_uniforms(target, state.form, module.uniforms, state.source_names, source_line)
+    check_uniforms(target, state.form, module.uniforms, state.source_names, source_line, state.keep)
     shell = final(state.shell) if state.shell is not None else None
     parts = print_parts(
         target, module, comments_before, state.stage, state.entry_name, state.keep, comment_behind, source_line,

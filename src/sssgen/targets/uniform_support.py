@@ -11,15 +11,21 @@ from sssgen.targets.descriptor import Target
 
 
 def check_uniforms(
-    target: Target, form: str, uniforms: Sequence[Uniform], names: Mapping[str, str], source: Callable[[Span], str]
+    target: Target,
+    form: str,
+    uniforms: Sequence[Uniform],
+    names: Mapping[str, str],
+    source: Callable[[Span], str],
+    plain: bool = False,
 ) -> None:
     """Raises UnsupportedError for the parameters and textures that the target cannot supply to a program of this form.
 
-    `names` has the author's name of each uniform; `source` returns the line of source that a span begins on.
+    `names` has the author's name of each uniform; `source` returns the line of source that a span begins on; `plain`
+    is whether the program is plain GLSL, which has no techniques.
     """
     wrong: list[Diagnostic] = []
 
-    def refuse(uniform: Uniform, message: str, hint: str = _INSTEAD) -> None:
+    def refuse(uniform: Uniform, message: str, hint: str = _PLAIN if plain else _INSTEAD) -> None:
         wrong.append(Diagnostic("error", message, uniform.span, hint, source(uniform.span)))
 
     textures = [uniform for uniform in uniforms if isinstance(uniform.type, Sampler)]
@@ -49,4 +55,5 @@ def check_uniforms(
 
 
 _INSTEAD = "choose a technique that does not read it, or another target"
+_PLAIN = "read a texture of another type, or choose another target"
 _CONSTANT = "make it a constant of the technique, split it into several parameters, or choose --form functions"

@@ -22,9 +22,11 @@ import numpy as np
 
 from sssgen.analyse.verify.compute_inputs import RoundValues, Word, group_counts, round_values, words
 from sssgen.analyse.verify.compute_report import ComputeReport, Difference
+from sssgen.analyse.verify.driven_function import NEWEST, VERSIONS
 from sssgen.ir.nodes import Module, Variable
 from sssgen.ir.types import Struct, spell, unnested
 from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.lang.source_lines import source_text
 from sssgen.passes.stage.host_uniforms import COUNT_TEXT, length_text
 from sssgen.passes.stage.storage_layout import extent
 from sssgen.pipeline.compiler import transpile
@@ -46,7 +48,8 @@ ORDERS = (0, 1, 2, 3)
 """The orders of the invocations on the processor."""
 SECONDS = 60.0
 """The time limit of one run."""
-_VERSION = re.compile(r"^[ \t]*#[ \t]*version\b", re.MULTILINE)
+_VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[^\n]*", re.MULTILINE)
+_VERIFIED = "verify a shader that reads textures and writes storage buffers"
 
 
 def verify_compute(
@@ -59,7 +62,10 @@ def verify_compute(
     module = load_glsl_text(text, shown).module
     if image := next((variable for variable in module.variables if variable.storage == "image"), None):
         message = f"'{image.name}' is an image: compute shaders with images are not verified"
-        raise failure(message, "verify a shader that reads textures and writes storage buffers", shown)
+        raise failure(message, _VERIFIED, shown)
+    if counter := _counter(module):
+        message = f"'{counter}' is an atomic counter: compute shaders with atomic counters are not verified"
+        raise failure(message, _VERIFIED, shown)
     started: dict[str, BackendProcess] = dict(machines or {})
     missing: dict[str, str] = {}
     try:
@@ -81,6 +87,8 @@ class _Verification:
     def __init__(self, module: Module, text: str, seed: int, machines: Mapping[str, BackendProcess]) -> None:
         self.module, self.seed, self.machines = module, seed, machines
         self.text = text if _VERSION.search(text) else f"#version 430 core\n{text}"
+        version = _VERSION.search(self.text)
+        self.is_newer = version is not None and int(version[1]) > NEWEST
         self.groups = group_counts(module)
         self.length = int(np.prod(self.groups) * np.prod(module.workgroup))
         self.buffers = [variable for variable in module.variables if variable.storage == "buffer"]
@@ -126,11 +134,11 @@ class _Verification:
             stable, places = self.stable([run.buffers for run in runs], written)
             order_places += places
             report = self.compare(report, values, runs[0], stable, written)
+            if report.reason:
+                return report
             report = report._replace(
                 rounds=report.rounds + 1, numbers=report.numbers + total, ordered=report.ordered + len(places)
             )
-            if report.reason:
-                return report
         report = report._replace(undefined=len(faults), faults=tuple(dict.fromkeys(faults)),
                                  order_places=tuple(dict.fromkeys(order_places)))  # fmt: skip
         if not report.rounds:
@@ -192,7 +200,14 @@ class _Verification:
             {},
             values=values.uniforms, textures=textures, blocks=self.blocks(values),
         )  # fmt: skip
-        after = self.machines["gl"].apply(by_opengl, dispatch)
+        try:
+            after = self.machines["gl"].apply(by_opengl, dispatch)
+        except SssgenError:
+            if not self.is_newer:
+                raise
+            text = _VERSION.sub(f"#version {VERSIONS[0]}", self.text, count=1)
+            after = self.machines["gl"].apply(by_opengl, dispatch._replace(text=Text(text)))
+            self.text, self.is_newer = text, False  # for the next rounds
         return {name: after[block] for name, block in names.items()}
 
     def blocks(self, values: RoundValues) -> dict[str, Block]:
@@ -279,6 +294,19 @@ class _Verification:
             if any(doc.startswith(length_text(buffer.type, field.name)) for field in buffer.type.fields):
                 return np.array([self.length], np.int32)
         raise failure(f"a uniform of the translation is unknown: {doc}")
+
+
+def _counter(module: Module) -> str:
+    """An atomic counter, or ''; OpenGL binds counters otherwise than the storage buffers that they become.
+
+    Such a buffer has the place of the counter's name, all others that of the name of their block.
+    """
+    for variable in module.variables:
+        if variable.storage == "buffer" and isinstance(variable.type, Struct):
+            (name, *_) = [field.name for field in variable.type.fields]
+            if name != variable.type.name and source_text(variable.span) == name:
+                return name
+    return ""
 
 
 def _block(buffer: Variable) -> str:

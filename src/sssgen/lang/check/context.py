@@ -103,8 +103,7 @@ class CheckContext:
         self.check_expression: Callable[[s.Expression], Typed]
         """Checks an expression; the checker of expressions sets it."""
         self.length_by_use: Callable[[s.Name], int] = lambda name: 0
-        """Gives the length of an array without one in desktop GLSL, by the name in its declaration; 0 where its use says
-        none."""
+        """Gives the length of an array without one in desktop GLSL, by its declared name; 0 where its use says none."""
         self.declared_without_length: set[str] = set()
         """The variables at file scope that may be declared again, with their length."""
         self.struct_precisions: dict[str, str] = {}

@@ -80,7 +80,8 @@ def _shared_names(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
 def with_shared_memory(vertex: Module, fragment: Module, capabilities: Capabilities) -> tuple[Module, Module]:
     """Both stages with one binding, number and access for each buffer and image.
 
-    Raises Unsupported where a vertex shader reads what the fragment shader writes, if the target cannot.
+    Raises Unsupported where a vertex shader reads what the fragment shader writes, if the target cannot. What a target
+    lacks at all is reported later.
     """
     modules = (vertex, fragment)
     keys = dict.fromkeys(memory_key(variable) for module in modules for variable in _memory(module))
@@ -92,7 +93,9 @@ def with_shared_memory(vertex: Module, fragment: Module, capabilities: Capabilit
     if not capabilities.vertex_buffer_writes:
         of_vertex = {memory_key(variable) for variable in _memory(vertex)}
         for variable in _memory(fragment):
-            if memory_key(variable) in of_vertex & written:
+            is_image = variable.storage == "image"
+            exists = capabilities.storage_images if is_image else capabilities.storage_buffers
+            if exists and memory_key(variable) in of_vertex & written:
                 what = f"'{variable.name}' is used by the vertex shader, too, and one of both stages writes it"
                 hint = "let the vertex shader read a buffer or image of its own, with the values of the last draw"
                 raise Unsupported(what, variable.span, hint=hint)
