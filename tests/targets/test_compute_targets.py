@@ -139,6 +139,13 @@ def test_no_two_buffers_have_one_binding(target: str) -> None:
     assert len(set(bindings.values())) == 3, bindings
 
 
+@pytest.mark.parametrize("target", ["glsl-330", "wgsl", "metal"])
+def test_counters_whose_names_differ_in_case(target: str) -> None:
+    text = "uniform atomic_uint hits, Hits;\nuniform atomic_uint HITS;\n"
+    text = emitted(text + "void main() { atomicCounterIncrement(hits); atomicCounterIncrement(Hits); }", target)
+    assert "HitsCounter " in text and "HitsCounter_2 " in text
+
+
 def test_lengths_of_buffers_in_functions_of_metal() -> None:
     text = "#version 430\nbuffer B { uint many[]; } b;\nfloat f() { return float(b.many.length()); }"
     assert "float f(int many_length)" in next(

@@ -26,6 +26,7 @@ def buffers(context: CheckContext, declaration: s.Declaration, doc: str) -> list
     for declarator in declaration.declarators:
         name, span = declarator.name.text, declarator.name.span
         label = s.Name(unused_global_name(context, f"{name[0].upper()}{name[1:]}Counter"), span)
+        context.file_names.add(label.text)  # those of `hits` and `Hits` differ
         member = s.Declaration(s.PLAIN, s.TypeName("uint", declaration.type.lengths, span), (declarator,), span)
         blocks.append(s.BlockSyntax(s.Qualifiers(("buffer",), (), span), label, (member,), None, (), doc))
     return blocks

@@ -66,6 +66,9 @@ class GlobalChecker:
         if "uniform" in keywords and context.plain and declaration.type.name in IMAGES:
             declare_image(self.expressions, declaration, external.doc)
         elif "uniform" in keywords and context.plain and declaration.type.name == atomic_counters.TYPE:
+            if block:
+                hint = "declare it outside of the block"
+                raise context.fail(declaration.type.span, "a block cannot have an atomic counter as a member", hint)
             for counter in atomic_counters.buffers(context, declaration, external.doc):
                 self.memory.buffer(counter)
         elif "uniform" in keywords:
