@@ -25,11 +25,25 @@ def buffers(context: CheckContext, declaration: s.Declaration, doc: str) -> list
     blocks = []
     for declarator in declaration.declarators:
         name, span = declarator.name.text, declarator.name.span
+        if declarator.value is not None:
+            hint = "the program that draws sets it"
+            raise context.fail(span, "an atomic counter has no initial value", hint)
         label = s.Name(unused_global_name(context, f"{name[0].upper()}{name[1:]}Counter"), span)
         context.file_names.add(label.text)  # those of `hits` and `Hits` differ
+        context.counters.add(name)
         member = s.Declaration(s.PLAIN, s.TypeName("uint", declaration.type.lengths, span), (declarator,), span)
         blocks.append(s.BlockSyntax(s.Qualifiers(("buffer",), (), span), label, (member,), None, (), doc))
     return blocks
+
+
+def check_counter(context: CheckContext, function: str, place: s.Expression) -> None:
+    """Reports an argument that is neither a counter nor an element of an array of counters."""
+    root = place
+    while isinstance(root, s.IndexOf):
+        root = root.value
+    if not isinstance(root, s.Name) or root.text not in context.counters:
+        hint = "declare one: layout(binding = 0) uniform atomic_uint count;"
+        raise context.fail(place.span, f"{function} takes an atomic counter", hint)
 
 
 def atomic(name: str, call: s.CallOf) -> s.Expression | None:
@@ -48,4 +62,4 @@ def atomic(name: str, call: s.CallOf) -> s.Expression | None:
     if name == "atomicCounterSubtract" and len(call.args) == 2:
         place, value = call.args
         return called("atomicAdd", place, s.Prefix("-", value, span, depth))
-    return called(_ATOMICS[name], *call.args) if name in _ATOMICS else None
+    return called(_ATOMICS[name], *call.args) if name in _ATOMICS and call.args else None

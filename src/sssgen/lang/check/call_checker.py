@@ -61,6 +61,7 @@ class CallChecker:
         if name.startswith("atomicCounter") and not overloads and context.plain:
             operation = atomic_counters.atomic(name, call)
             if operation is not None:
+                atomic_counters.check_counter(context, name, call.args[0])
                 return self.counter(operation, id(call) in self.expressions.dropped)
         if name in MEMORY and not overloads and context.plain and name != "arrayLength":
             return self.memory.operation(MEMORY[name], call)
@@ -87,9 +88,11 @@ class CallChecker:
         """An operation on an atomic counter; `dropped`: its result is not used."""
         if dropped:
             self.expressions.dropped.add(id(operation))
+        self.context.in_counter_call = True
         try:
             return self.expressions.check(operation)
         finally:
+            self.context.in_counter_call = False
             self.expressions.dropped.discard(id(operation))  # another expression may get this id
 
     def hides_builtins(self, overloads: Sequence[Signature]) -> bool:

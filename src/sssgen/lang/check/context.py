@@ -130,6 +130,10 @@ class CheckContext:
         """The sizes of a compute shader's workgroup."""
         self.buffer_members: dict[str, ir.Member] = {}
         """The members of storage buffers without an instance name."""
+        self.counters: set[str] = set()
+        """The atomic counters, which are such members."""
+        self.in_counter_call = False
+        """Whether the arguments of a function of atomic counters are being checked."""
         self.barriers: list[ir.Span] = []
         """The places of barriers, which compute shaders alone have."""
         self.derivatives: list[ir.Span] = []
