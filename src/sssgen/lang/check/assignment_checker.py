@@ -66,14 +66,16 @@ class AssignmentChecker:
         """Adds the side effects of `?:` to the prelude; its value, of this type, is not used."""
         context = self.context
         condition = self.expressions.check_as(conditional.condition, BOOL, "", "a condition")
-        one, yes = self.expressions.with_prelude(conditional.yes, self.effect)
-        other, no = self.expressions.with_prelude(conditional.no, self.effect)
+        yes_type, yes = self.expressions.with_prelude(conditional.yes, self.effect)
+        no_type, no = self.expressions.with_prelude(conditional.no, self.effect)
         if yes or no:
             context.function.prelude.append(ir.If(condition, tuple(yes), tuple(no), conditional.span))
-        if one != other and not (context.converts and (converts(one, other) or converts(other, one))):
-            message = f"the two arms differ: {a_type(one)} and {a_type(other)}"
+        if yes_type != no_type and not (
+            context.converts and (converts(yes_type, no_type) or converts(no_type, yes_type))
+        ):
+            message = f"the two arms differ: {a_type(yes_type)} and {a_type(no_type)}"
             raise context.fail(conditional.span, message, "write if and else")
-        return other if converts(one, other) else one
+        return no_type if converts(yes_type, no_type) else yes_type
 
     def calls_of(self, value: ir.Expr) -> None:
         """Adds the calls in an unused value to the prelude, as they may have side effects."""
