@@ -36,8 +36,9 @@ def test_compilers_accept_them(target: str) -> None:
 
 
 def test_other_targets_refuse_them() -> None:
-    with pytest.raises(SssgenError, match="cannot supply 'scene': it has no sampler2DMS"):
-        transpile(load_glsl_text(SHADER, "a.frag").module, "glsl-es-300", "a")
+    with pytest.raises(SssgenError, match="cannot supply 'scene': it has no sampler2DMS") as refusal:
+        transpile(load_glsl_text(SHADER, "a.frag").module, "glsl-es-300", "a", keep=True)
+    assert refusal.value.diagnostics[0].hint == "read a texture of another type, or choose another target"
     with pytest.raises(SssgenError, match=r"this target has no texelFetch \(tsl\)"):
         transpile(load_glsl_text(FUNCTION, "a.glsl").module, "tsl", "a")
 

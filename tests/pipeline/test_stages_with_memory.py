@@ -116,6 +116,20 @@ def test_other_targets_write_what_the_vertex_shader_reads() -> None:
     assert "RWByteAddressBuffer mine : register(u3);" in text
 
 
+def test_a_target_without_memory_says_so_first() -> None:
+    fragment = FRAGMENT.replace("counts[at.x] += 1u;", "mine.bones[at.x].tint = tint;")
+    with pytest.raises(SssgenError, match=r"is a storage buffer, which this target lacks \(glsl-es-300\)"):
+        translate(VERTEX, fragment, "glsl-es-300")
+    vertex = "#version 430\nlayout(r32f) uniform image2D map;\n"
+    vertex += "void main() { gl_Position = imageLoad(map, ivec2(0)); }\n"
+    fragment = "#version 430\nlayout(r32f) uniform image2D map;\nout vec4 color;\n"
+    fragment += "void main() { imageStore(map, ivec2(1), vec4(1)); color = vec4(1); }\n"
+    with pytest.raises(SssgenError, match=r"'map' is an image, which this target lacks \(glsl-es-300\)"):
+        translate(vertex, fragment, "glsl-es-300")
+    with pytest.raises(SssgenError, match=r"'map' is used by the vertex shader, too, .*\(wgsl"):
+        translate(vertex, fragment)
+
+
 def test_registers_that_would_differ() -> None:
     image = "layout(r32f, binding = 3) uniform image2D heights;\n"
     vertex = VERTEX.replace("in vec3", image + "in vec3").replace("tint = ", "tint = imageLoad(heights, ivec2(0)) + ")
