@@ -36,14 +36,15 @@ def buffers(context: CheckContext, declaration: s.Declaration, doc: str) -> list
     return blocks
 
 
-def check_counter(context: CheckContext, function: str, place: s.Expression) -> None:
-    """Reports an argument that is neither a counter nor an element of an array of counters."""
+def counter_name(context: CheckContext, function: str, place: s.Expression) -> s.Name:
+    """The counter, or array of counters, of an argument. Reports any other argument."""
     root = place
     while isinstance(root, s.IndexOf):
         root = root.value
     if not isinstance(root, s.Name) or root.text not in context.counters:
         hint = "declare one: layout(binding = 0) uniform atomic_uint count;"
         raise context.fail(place.span, f"{function} takes an atomic counter", hint)
+    return root
 
 
 def atomic(name: str, call: s.CallOf) -> s.Expression | None:

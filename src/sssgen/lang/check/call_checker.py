@@ -61,8 +61,8 @@ class CallChecker:
         if name.startswith("atomicCounter") and not overloads and context.plain:
             operation = atomic_counters.atomic(name, call)
             if operation is not None:
-                atomic_counters.check_counter(context, name, call.args[0])
-                return self.counter(operation, id(call) in self.expressions.dropped)
+                counter = atomic_counters.counter_name(context, name, call.args[0])
+                return self.counter(counter, operation, id(call) in self.expressions.dropped)
         if name in MEMORY and not overloads and context.plain and name != "arrayLength":
             return self.memory.operation(MEMORY[name], call)
         args = self.expressions.operands(call.args, self.outs(name, overloads, call))
@@ -84,15 +84,15 @@ class CallChecker:
         known = [*context.functions, *context.structs, *(() if context.plain else q.QUANTITIES), *BUILTINS]
         raise context.unknown(callee.span, "function", name, known)
 
-    def counter(self, operation: s.Expression, dropped: bool) -> Typed:
+    def counter(self, counter: s.Name, operation: s.Expression, dropped: bool) -> Typed:
         """An operation on an atomic counter; `dropped`: its result is not used."""
         if dropped:
             self.expressions.dropped.add(id(operation))
-        self.context.in_counter_call = True
+        self.context.counter_place = counter
         try:
             return self.expressions.check(operation)
         finally:
-            self.context.in_counter_call = False
+            self.context.counter_place = None
             self.expressions.dropped.discard(id(operation))  # another expression may get this id
 
     def hides_builtins(self, overloads: Sequence[Signature]) -> bool:

@@ -132,8 +132,8 @@ class CheckContext:
         """The members of storage buffers without an instance name."""
         self.counters: set[str] = set()
         """The atomic counters, which are such members."""
-        self.in_counter_call = False
-        """Whether the arguments of a function of atomic counters are being checked."""
+        self.counter_place: s.Name | None = None
+        """The name of a counter in the call of a counter's function that is being checked: it alone is allowed."""
         self.barriers: list[ir.Span] = []
         """The places of barriers, which compute shaders alone have."""
         self.derivatives: list[ir.Span] = []

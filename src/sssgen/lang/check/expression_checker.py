@@ -245,7 +245,7 @@ class ExpressionChecker:
                 return Typed(literal(value.type, value.value, name.span))
             return Typed(reference, value.quantity)
         if name.text in context.buffer_members:
-            if name.text in context.counters and not context.in_counter_call:
+            if name.text in context.counters and name is not context.counter_place:
                 message = f"'{name.text}' is an atomic counter, which only the functions of counters take"
                 raise context.fail(name.span, message, f"write atomicCounter({name.text}) for its value")
             return Typed(context.buffer_members[name.text]._replace(span=name.span))

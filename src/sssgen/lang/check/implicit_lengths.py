@@ -93,7 +93,7 @@ class ImplicitLengths:
             self.visit_fields(node)
 
     def visit_fields(self, node: object) -> None:
-        for field in fields(node):  # type: ignore[arg-type]
+        for field in fields(node):  # type: ignore[arg-type]  # both callers have a dataclass, of many classes
             self.visit(getattr(node, field.name))
 
     def index(self, index: s.IndexOf) -> None:
