@@ -185,21 +185,22 @@ def test_a_buffer_of_webgl(folder: Path, tmp_path: Path) -> None:
     assert short == {"error": "Scene: 32 bytes, but its members need 264"}
 
 
+def write_program(folder: Path, vertex: str, fragment: str) -> None:
+    """Translates two stages of GLSL 4.50 to WGSL, with the module that draws with them."""
+    stages = [folder / "a.vert", folder / "a.frag"]
+    for path, text in zip(stages, (vertex, fragment), strict=True):
+        path.write_text(f"#version 450\n{text}", encoding="utf-8")
+    assert cli.main(["transpile", "--stages", *map(str, stages), "-t", "wgsl", "-o", str(folder)]) == 0
+    (folder / "webgl_program.js").rename(folder / "webgl_program.mjs")
+
+
 def test_storage_buffers_and_images(folder: Path, tmp_path: Path) -> None:
-    (tmp_path / "a.vert").write_text(
-        "#version 450\nlayout(std430) buffer Places { vec4 places[]; };\n"
-        "void main() { gl_Position = places[gl_VertexID]; }\n",
-        encoding="utf-8",
-    )
-    (tmp_path / "a.frag").write_text(
-        "#version 450\nlayout(std430) buffer Count { uint count; };\n"
-        "layout(rgba8) uniform image2D picture;\nout vec4 color;\n"
+    write_program(
+        tmp_path,
+        "layout(std430) buffer Places { vec4 places[]; };\nvoid main() { gl_Position = places[gl_VertexID]; }\n",
+        "layout(std430) buffer Count { uint count; };\nlayout(rgba8) uniform image2D picture;\nout vec4 color;\n"
         "void main() { atomicAdd(count, 1u); imageStore(picture, ivec2(0), vec4(1.0)); color = vec4(1.0); }\n",
-        encoding="utf-8",
     )
-    stages = [str(tmp_path / f"a.{suffix}") for suffix in ("vert", "frag")]
-    assert cli.main(["transpile", "--stages", *stages, "-t", "wgsl", "-o", str(tmp_path)]) == 0
-    (tmp_path / "webgl_program.js").rename(tmp_path / "webgl_program.mjs")
     wrong = answer(tmp_path, "return draw({})")
     assert wrong == {"error": "a: 'places_buffer' has no value: call setBuffer or setImage"}
     commands = """
@@ -214,15 +215,12 @@ def test_storage_buffers_and_images(folder: Path, tmp_path: Path) -> None:
 
 
 def test_a_texture_with_several_samples(folder: Path, tmp_path: Path) -> None:
-    (tmp_path / "a.vert").write_text("#version 450\nvoid main() { gl_Position = vec4(0.0); }\n", encoding="utf-8")
-    (tmp_path / "a.frag").write_text(
-        "#version 450\nuniform sampler2DMS scene;\nout vec4 color;\n"
+    write_program(
+        tmp_path,
+        "void main() { gl_Position = vec4(0.0); }\n",
+        "uniform sampler2DMS scene;\nout vec4 color;\n"
         "void main() { color = texelFetch(scene, textureSize(scene) / 2, 3); }\n",
-        encoding="utf-8",
     )
-    stages = [str(tmp_path / f"a.{suffix}") for suffix in ("vert", "frag")]
-    assert cli.main(["transpile", "--stages", *stages, "-t", "wgsl", "-o", str(tmp_path)]) == 0
-    (tmp_path / "webgl_program.js").rename(tmp_path / "webgl_program.mjs")
     commands = """
         const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.TEXTURE_BINDING;
         const scene = device.createTexture({ size: [8, 8], format: 'rgba8unorm', sampleCount: 4, usage });
